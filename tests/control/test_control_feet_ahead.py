@@ -79,4 +79,5 @@ def test_the_room_of_legs_along_them_is_that_of_the_nearest(seed: int) -> None:
     upper = np.zeros(LOCAL)
     upper[LOWERING - DofGroup.ROOT.size] = 0.1
     least = min(check.room_of_legs(each, upper, 0.0) for each in rows)
-    assert abs(check.room_along(rows, upper) - least) < 1e-6
+    for farthest in (9.0, 0.2, 0.02):
+        assert abs(check.room_along(rows, upper, farthest) - min(least, farthest)) < 1e-6

@@ -40,7 +40,14 @@ def settling(rise: float, look: Look) -> list[Playback]:
     shown = FEET.standing(before(0.0))
     shown[RISES + 2] = rise
     moment = Moment(
-        Playback(shown, UPPER, UPPER), UPPER, DT, UNKNOWN, -1.0, look, lambda roots, upper: 0.0, lambda root, upper: 0.0
+        Playback(shown, UPPER, UPPER),
+        UPPER,
+        DT,
+        UNKNOWN,
+        -1.0,
+        look,
+        lambda roots, upper, farthest: 0.0,
+        lambda root, upper: 0.0,
     )
     return list(FEET.settling(moment, Playback(shown, UPPER, UPPER)))
 
@@ -83,7 +90,14 @@ def ways_under(rise: float, room_above: RoomAbove) -> list[Playback]:
     shown[RISES + 2] = rise
     look = Around(0.5, lasts=True)
     moment = Moment(
-        Playback(shown, UPPER, UPPER), UPPER, DT, UNKNOWN, -1.0, lambda *_: look, lambda roots, upper: 0.0, room_above
+        Playback(shown, UPPER, UPPER),
+        UPPER,
+        DT,
+        UNKNOWN,
+        -1.0,
+        lambda *_: look,
+        lambda roots, upper, farthest: 0.0,
+        room_above,
     )
     return [way for way, _ in FEET.under(moment, [(Playback(before(0.0), UPPER, UPPER), np.zeros(3))])]
 

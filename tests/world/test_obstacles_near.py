@@ -87,6 +87,8 @@ def test_each_capsule_of_a_body_is_as_far_as_is_said_or_farther() -> None:
         assert found.min() == pytest.approx(expected.min(), abs=1e-6)
         near = expected < 0.4
         np.testing.assert_allclose(found[near], expected[near], atol=1e-6)
+        capped = obstacles.clearances(axes[:, :, None], radii, origin, time, floors, 0.1)
+        np.testing.assert_allclose(np.minimum(capped, 0.1), np.minimum(expected, 0.1), atol=1e-6)
         exact, left_out = exact + int(near.sum()), left_out + int((gaps.min(axis=1) < expected).sum())
     assert exact > 10
     assert left_out > 10

@@ -162,7 +162,7 @@ def rehearse_shown(humanoid: Humanoid) -> None:
     upper, feet = np.zeros(LOCAL), [beside(gait, RootState(0.0, z, 0.0).as_array()) for z in (0.0, 1.0)]
     shown = [np.concatenate([row, np.zeros(CARRIAGE)]) for row in feet]
     check.free_between(Frames((shown[0], shown[1]), (upper, upper), (0.0, 10.0)))
-    check.room_along(feet[0][None], upper)
+    check.room_along(feet[0][None], upper, 1.0)
     lower_body(gait, shown[0][None], upper[:1])
 
 

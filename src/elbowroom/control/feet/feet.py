@@ -27,7 +27,8 @@ class Look(Protocol):
         ...
 
 
-RoomAlong = Callable[[Floats, Floats], float]  # metres from legs to what stands: roots with feet (N, WITH_FEET), upper
+# Metres from legs to what stands, no more than some: roots with feet (N, WITH_FEET), upper body, and these.
+RoomAlong = Callable[[Floats, Floats, float], float]
 RoomAbove = Callable[[Floats, Floats], float]  # metres from all that legs carry to what stands: a root with feet, upper
 
 

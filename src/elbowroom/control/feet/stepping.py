@@ -34,6 +34,7 @@ Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
 
 _ROOM = 0.10  # metres about the legs in which feet step as they like
+_ASKED = 0.01  # metres: more room about legs is not told apart
 CLEAR = 0.004  # metres about the legs that have to stay, where there are less, as far ahead as is known
 _FORESEEN = 0.75  # seconds that are looked ahead
 _SAME = 1e-9  # metres and radians
@@ -242,11 +243,12 @@ class Stepping:
         """Whether legs on feet that step on from `root` stay clear of what is near, as far ahead as is known."""
         under = self._follower.under
         rows = steps_ahead(self._gait, root[:WITH_FEET], moment.ahead, _FORESEEN, self._own, under)
-        return moment.room_along(rows, upper) >= CLEAR
+        return moment.room_along(rows, upper, _ASKED) >= CLEAR
 
     def _is_clear(self, moment: Moment, after: Followed, posed: Playback) -> bool:
         """Whether legs are clear of what is near, but for the ground under them, where that is not plain."""
-        return not self._footing.plain and moment.room_along(after.root[None, :WITH_FEET], posed.upper) >= CLEAR
+        legs = after.root[None, :WITH_FEET]
+        return not self._footing.plain and moment.room_along(legs, posed.upper, _ASKED) >= CLEAR
 
     def _glided(self, it: Posing, *, lasts: bool) -> Followed:
         """A pose on feet that glide, but for the one that stands, as long as the legs are clear on it.
@@ -260,7 +262,7 @@ class Stepping:
             if near >= CLEAR or self._is_clear(moment, held, posed):
                 under = self._follower.under
                 back = glides_ahead(self._gait, held.root[:WITH_FEET], moment.ahead, _FORESEEN, under)
-                if moment.room_along(back, posed.upper) >= CLEAR:
+                if moment.room_along(back, posed.upper, _ASKED) >= CLEAR:
                     return held
         return it.made(GLIDES)
 

@@ -140,20 +140,20 @@ class BodyCheck:
         legs = self.model.roots.indices
         return np.inf if self.alone else self._least(self._pose(root, upper, axes), time, -np.inf, legs)
 
-    def room_along(self, roots: Floats, upper: Floats) -> float:
-        """Metres from the legs to what stands about feet, the least of root states (N, WITH_FEET).
+    def room_along(self, roots: Floats, upper: Floats, farthest: float) -> float:
+        """Metres from the legs to what stands about feet, the least of root states (N, WITH_FEET); `farthest` at most.
 
         Feet are held some millimetres higher, where ground is not plain: so what they stand on counts as no nearer.
         """
         if self._empty:
-            return np.inf
+            return farthest
         legs, near, lowering = self.model.roots, roots.copy(), float(upper[_LOWERING])
         near[:, :2] -= roots[0, :2]
         axes = self.footing.lifted(legs_of(self.model.lower, near, lowering), legs, near, lowering, _OVER_GROUND)
         lanes = np.ascontiguousarray(axes.transpose(2, 0, 1)).reshape(-1, 6, 1)
         radii, floors = np.tile(legs.radii, len(roots)), np.tile(self.soles.floors_of_legs(roots), len(roots))
-        found = self._standing.clearances(lanes, radii, roots[0, :2], 0.0, floors)
-        return float(found.min(initial=np.inf))
+        found = self._standing.clearances(lanes, radii, roots[0, :2], 0.0, floors, farthest)
+        return float(found.min(initial=farthest))
 
     def room_above(self, root: Floats, upper: Floats) -> float:
         """Metres from all that is carried by pelvis and legs to what stands."""
@@ -266,7 +266,7 @@ class BodyCheck:
     def _gaps(self, axes: Floats32, root: Floats, floors: Floats) -> Floats32:
         """How far each of the axes (C, 6, 1) about a root's place is from what stands, (C,)."""
         x, z = root[:2].tolist()
-        return gaps_about(self.soles.body, self._standing.about_bodies, axes, x, z, floors)
+        return gaps_about(self.soles.body, self._standing.about_bodies, axes, x, z, floors, np.inf)
 
     def _pose(self, root: Floats, upper: Floats, axes: Floats32 | None = None) -> _Pose:
         """A pose, remembered; its `axes` may be known."""

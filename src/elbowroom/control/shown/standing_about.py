@@ -82,7 +82,9 @@ def legs_of(lower: WholeBody, roots: Floats, lowering: float) -> Floats32:
 
 
 @brief_exact_kernel
-def gaps_about(body: ShownBody, standing: Standing, axes: Floats32, x: float, z: float, floors: Floats) -> Floats32:
+def gaps_about(
+    body: ShownBody, standing: Standing, axes: Floats32, x: float, z: float, floors: Floats, farthest: float
+) -> Floats32:
     """How far each capsule (C, 6, 1) about a place (x, z) is from what stands, (C,) metres: `clearances_around`.
 
     Both soles keep above `floors` (2,); what is no foot is held above the lower of them too.
@@ -93,7 +95,7 @@ def gaps_about(body: ShownBody, standing: Standing, axes: Floats32, x: float, z:
         for c in range(count):
             if body.sides[c] != OTHERS:
                 heights[c] = floors[body.sides[c]]
-    found = clearances_around(standing, axes, body.radii, x, z, heights)
+    found = clearances_around(standing, axes, body.radii, x, z, heights, farthest)
     if low > -np.inf:
         for c in range(count):
             if body.sides[c] == OTHERS:
@@ -108,7 +110,8 @@ def proven_between(
 ) -> bool:
     """Whether each capsule is proven free of what stands, all the way from one pose to another, by `halving`.
 
-    They are told by root states and upper bodies (LOCAL,), with their `gaps` (2, C) above common `floors` (2,).
+    They are told by root states and upper bodies (LOCAL,), with their `gaps` (2, C) above common `floors` (2,). Who has
+    as much room in between as he can move is free: more than twice that is not told apart.
     """
     first, begin, x, z = roots[0], uppers[0], roots[0][0], roots[0][1]
     root_way, upper_way, (parts, shares) = roots[1] - first, uppers[1] - begin, (np.empty(1, np.int64), np.empty(1))
@@ -117,12 +120,12 @@ def proven_between(
         np.empty((1, len(body.radii)), np.float32),
     )
     near, q = np.empty((1, len(first))), np.zeros((1, DOF))
-    proof = begun(gaps, ways, _ONE, 0.0, HALVINGS)
+    proof, enough = begun(gaps, ways, _ONE, 0.0, HALVINGS), 2.0 * ways.max()
     while due(proof, parts, shares) > 0:
         near[0] = first + shares[0] * root_way
         q[0, DOF - LOCAL :] = begin + shares[0] * upper_way
         near[0, 0] -= x
         near[0, 1] -= z
-        found[0] = gaps_about(body, standing, lifted_capsules(body, q, near), x, z, floors)
+        found[0] = gaps_about(body, standing, lifted_capsules(body, q, near), x, z, floors, enough)
         settle(proof, found, _ONE)
     return bool(proof.least.min() >= 0.0)

@@ -71,12 +71,12 @@ def _lower_above(axes: Floats32, radii: Floats32, near: Nearby, tops: Floats, fl
 
 @brief_kernel
 def clearances_around(
-    standing: Standing, segments: Floats32, radii: Floats32, x: float, z: float, floors: Floats
+    standing: Standing, segments: Floats32, radii: Floats32, x: float, z: float, floors: Floats, farthest: float
 ) -> Floats32:
     """The clearance (C,) of each of `segments` (C, 6, 1) that lie about a place (x, z), metres; infinite without any.
 
-    That of the nearest capsule is exact; those of others are exact too, or at least so much. What does not rise above a
-    capsule's own of the `floors` (C,) is left out.
+    That of the nearest capsule is exact; those of others are exact too, or at least so much. What is more than
+    `farthest` metres is not told apart. What does not rise above a capsule's own of the `floors` (C,) is left out.
     """
     count, many = segments.shape[0], standing.near.rows.shape[0]
     out, axes = np.full(count, _INFINITE, np.float32), np.empty((6, count), np.float32)
@@ -86,12 +86,12 @@ def clearances_around(
             axes[i, c] = segments[c, i, 0]
             least[i % 3] = min(least[i % 3], axes[i, c] - radii[c])
             most[i % 3] = max(most[i % 3], axes[i, c] + radii[c])
-    reach = _NEAR
+    reach = min(_NEAR, farthest)
     while many > 0 and count > 0 and reach < _FAR:
         near, tops, everything = _within(standing, least - reach, most + reach, x, z, floors.min())
-        out[:] = _INFINITE if everything else reach
+        out[:] = farthest if everything else reach
         _lower_above(axes, radii, near, tops, floors, out)
-        if everything or out.min() < reach:
+        if everything or out.min() < reach or reach >= farthest:
             break
-        reach *= _WIDER
+        reach = min(reach * _WIDER, farthest)
     return out

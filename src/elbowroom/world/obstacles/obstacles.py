@@ -216,12 +216,15 @@ class Obstacles:
                 break
         return float(found)
 
-    def clearances(self, segments: Floats32, radii: Floats32, origin: Floats, time: float, floors: Floats) -> Floats32:
+    def clearances(
+        self, segments: Floats32, radii: Floats32, origin: Floats, time: float, floors: Floats, farthest: float = np.inf
+    ) -> Floats32:
         """`clearance` of each capsule (C, 6, 1) of one posture, (C,): of the nearest; of others at least so much.
 
-        Of what stands, that which rises above a height of each capsule's own, the `floors` (C,).
+        Of what stands, that which rises above a height of each capsule's own, the `floors` (C,). More than `farthest`
+        metres of that are not told apart.
         """
-        found = clearances_around(self.about_bodies, segments, radii, origin[0], origin[1], floors)
+        found = clearances_around(self.about_bodies, segments, radii, origin[0], origin[1], floors, farthest)
         if len(self.moving):
             moved = about(self.moving.at(time, self._movers), float(origin[0]), float(origin[1]))
             found = np.minimum(found, clearance_from_all(segments[:, :, 0], radii, moved))
