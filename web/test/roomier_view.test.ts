@@ -1,12 +1,15 @@
 import { describe, expect, it } from "vitest";
-import { NO_SHIFT, roomierView } from "../src/camera/roomier_view";
-import { prepareBox, type OrientedBox } from "../src/camera/spring_arm";
+import { backwards, NO_SHIFT, roomierView } from "../src/camera/roomier_view";
+import { cameraReach, prepareBox, type OrientedBox } from "../src/camera/spring_arm";
 
 const upright = (center: OrientedBox["center"], halfSize: OrientedBox["halfSize"]) =>
   prepareBox({ center, rotation: [0, 0, 0, 1], halfSize });
 
 const view = (boxes: ReturnType<typeof upright>[]) =>
-  roomierView({ all: boxes, walls: boxes }, [0, 1.5, 0], 0, 0.3, 4, 0.14, NO_SHIFT, { pitch: [-0.2, 1.3], wide: false });
+  roomierView(
+    ({ yaw, pitch }) => cameraReach({ all: boxes, walls: boxes }, [0, 1.5, 0], backwards(yaw, 0.3 + pitch), 4, 0.14),
+    0.3, 4, NO_SHIFT, { pitch: [-0.2, 1.3], wide: false },
+  );
 
 describe("roomierView", () => {
   it("leaves the view alone where there is room", () => {

@@ -44,4 +44,28 @@ describe("a place that is told by its triangles", () => {
     expect(Math.hypot(x, z)).toBeGreaterThan(2.5);
     expect(y).toBeGreaterThan(3.1);
   });
+
+  it("is seen from aside where a post stands close behind, with two rays in a picture and one for the arm", () => {
+    const post = new Mesh(new BoxGeometry(0.3, 4, 0.3), new MeshLambertMaterial());
+    post.position.set(0, 2, -0.6);
+    post.updateMatrixWorld();
+    const surfaces = new Surfaces(), camera = new ThirdPersonCamera(() => false);
+    surfaces.take([storey(0), post]);
+    const here = { x: 0, z: 0, heading: 0, eye: 1.6, ground: 0.05, sideways: 0, trail: false };
+    camera.snap(here);
+    let rays = 0;
+    const sight: typeof surfaces.sight = (...asked) => {
+      rays++;
+      return surfaces.sight(...asked);
+    };
+    const frames = 90;
+    for (let frame = 0; frame < frames; frame++) camera.update(here, { all: [house], walls: [], sight }, 1 / 30);
+    const [x, , z] = camera.position;
+    expect(Math.hypot(x, z)).toBeGreaterThan(2);
+    expect(camera.avatarOpacity).toBe(1);
+    expect(rays).toBeLessThanOrEqual(3 * frames);
+    const before = camera.position;
+    for (let frame = 0; frame < frames; frame++) camera.update(here, { all: [house], walls: [], sight }, 1 / 30);
+    expect(Math.hypot(...camera.position.map((value, i) => value - (before[i] ?? 0)))).toBeLessThan(0.05);
+  });
 });

@@ -1,6 +1,5 @@
 /** Where a camera that has no room behind the avatar should rather look from: a little higher, lower or aside. */
 
-import { cameraReach, type CameraObstacles } from "./spring_arm";
 import type { Vec3 } from "./vectors";
 
 /** A change of the camera's direction, radians. */
@@ -38,19 +37,21 @@ export interface Leeway {
   readonly wide: boolean;
 }
 
+/** How far from the pivot the camera may be under a shift, metres. */
+export type Reach = (shift: ViewShift) => number;
+
 /** The shift that gains most distance for the least change; none where there is room enough. */
 export function roomierView(
-  obstacles: CameraObstacles, pivot: Vec3, heading: number, pitch: number, wanted: number, radius: number,
-  current: ViewShift, { pitch: limits, wide }: Leeway,
+  reachUnder: Reach, pitch: number, wanted: number, current: ViewShift, { pitch: limits, wide }: Leeway,
 ): ViewShift {
   const enough = ENOUGH * wanted;
-  if (cameraReach(obstacles, pivot, backwards(heading, pitch), wanted, radius) >= enough) return NO_SHIFT;
+  if (reachUnder(NO_SHIFT) >= enough) return NO_SHIFT;
   let best = NO_SHIFT;
   let bestScore = -Infinity;
   for (const rise of PITCHES) {
     if (pitch + rise < limits[0] || pitch + rise > limits[1]) continue;
     for (const yaw of wide ? WIDE_YAWS : YAWS) {
-      const reach = cameraReach(obstacles, pivot, backwards(heading + yaw, pitch + rise), wanted, radius);
+      const reach = reachUnder({ yaw, pitch: rise });
       const loyal = yaw === current.yaw && rise === current.pitch ? LOYALTY : 0;
       const narrow = wide ? Math.max(0, CRAMPED - reach) : 0;
       const score = Math.min(reach, enough) + loyal - narrow - PRICE * Math.hypot(yaw, rise);

@@ -1,6 +1,7 @@
 /** The camera: orbits a pivot at the avatar's shoulders on a spring arm that no wall can enter, from the view that is chosen. */
 
 import { damp, dampAngle, wrapAngle } from "./damping";
+import { Glances } from "./glances";
 import { backwards, NO_SHIFT, roomierView, type ViewShift } from "./roomier_view";
 import { cameraReach, distanceToBoxes, pointAlong, type CameraObstacles } from "./spring_arm";
 import type { Vec3 } from "./vectors";
@@ -21,6 +22,11 @@ const FOLLOW_RATE = 1.1;
 const FADE_NEAR = 0.5;
 const FADE_FAR = 1.15;
 const SHIFT_HALFLIFE = 0.14;
+/** Metres in sight with which one stays where the user looks from, where triangles are in the way; so many, once one has left. */
+const IN_SIGHT = 1.2;
+const IN_SIGHT_AGAIN = 1.8;
+/** Radians: a view that is shifted by less looks along the arm. */
+const STRAIGHT = 0.02;
 
 /** Where the avatar is and what the user does with it. */
 export interface Followed {
@@ -62,6 +68,9 @@ export class ThirdPersonCamera {
   private shift: ViewShift = NO_SHIFT;
   private shiftedYaw = 0;
   private shiftedPitch = 0;
+  private readonly glances = new Glances();
+  /** How far the last look went, along the arm, metres. */
+  private seen = Infinity;
   private recentering = false;
   private pivot: [number, number, number] = [0, 1.4, 0];
   private at: [number, number, number] = [0, 2, -3.9];
@@ -140,6 +149,7 @@ export class ThirdPersonCamera {
     this.recentering = false;
     this.shift = NO_SHIFT;
     this.shiftedYaw = this.shiftedPitch = 0;
+    this.seen = Infinity;
     this.arm = this.zoomed = this.aim.distance;
   }
 
@@ -152,8 +162,8 @@ export class ThirdPersonCamera {
     this.pivot = this.pivotFor(followed, heading, obstacles);
     this.seekRoom(obstacles, heading, pitch, dt);
     const back = backwards(heading + this.shiftedYaw, pitch + this.shiftedPitch);
-    const seen = obstacles.sight?.(this.pivot, back, this.zoomed + RADIUS) ?? Infinity;
-    const goal = Math.min(cameraReach(obstacles, this.pivot, back, this.zoomed, RADIUS), Math.max(seen - RADIUS, 0));
+    this.seen = Math.max((obstacles.sight?.(this.pivot, back, this.zoomed + RADIUS) ?? Infinity) - RADIUS, 0);
+    const goal = Math.min(cameraReach(obstacles, this.pivot, back, this.zoomed, RADIUS), this.seen);
     const smooth = goal < this.arm ? goal : damp(this.arm, goal, OUT_HALFLIFE, dt);
     const free = distanceToBoxes(obstacles.all, ...pointAlong(this.pivot, back, smooth)) >= 0.9 * RADIUS;
     this.arm = free ? smooth : goal; // past furniture the camera cuts: it is never inside
@@ -188,9 +198,25 @@ export class ThirdPersonCamera {
     const stays = this.calm() || this.name === "orbit" || this.name === "above";
     this.shift = stays
       ? NO_SHIFT
-      : roomierView(obstacles, this.pivot, heading, pitch, this.zoomed, RADIUS, this.shift, leeway);
+      : roomierView(this.reachIn(obstacles, heading, pitch), pitch, this.zoomed, this.shift, leeway);
     this.shiftedYaw = damp(this.shiftedYaw, this.shift.yaw, SHIFT_HALFLIFE, dt);
     this.shiftedPitch = damp(this.shiftedPitch, this.shift.pitch, SHIFT_HALFLIFE, dt);
+  }
+
+  /** How far the camera may be from the pivot under a shift of the view. */
+  private reachIn(obstacles: CameraObstacles, heading: number, pitch: number): (shift: ViewShift) => number {
+    const { pivot, zoomed } = this;
+    this.glances.next();
+    return (shift) => {
+      const back = backwards(heading + shift.yaw, pitch + shift.pitch);
+      const reach = cameraReach(obstacles, pivot, back, zoomed, RADIUS);
+      const look = () => (obstacles.sight?.(pivot, back, zoomed + RADIUS) ?? Infinity) - RADIUS;
+      const glance = () => this.glances.at(`${shift.yaw} ${shift.pitch}`, look);
+      if (shift !== NO_SHIFT) return Math.min(reach, glance());
+      const straight = Math.hypot(this.shiftedYaw, this.shiftedPitch) < STRAIGHT;
+      const seen = straight ? this.seen : glance();
+      return seen < (this.shift === NO_SHIFT ? IN_SIGHT : IN_SIGHT_AGAIN) ? Math.min(reach, seen) : reach;
+    };
   }
 
   private turnByItself(followed: Followed, dt: number): void {
