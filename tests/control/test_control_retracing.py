@@ -84,10 +84,10 @@ def test_who_dithers_where_he_finds_no_way_still_knows_how_he_came() -> None:
     for _ in range(60 * 4):
         if not retracing.goes_back:
             retracing.wait(last, DT, on_the_way=True)
-    came = retracing.came(last, DT)
-    assert came is not None
-    assert came.pose is stands
-    shown, roots = retracing.go_straight(last, came, DT).pose, []
+    arrival = retracing.arrival(last, DT)
+    assert arrival is not None
+    assert arrival.pose is stands
+    shown, roots = retracing.go_straight(last, arrival, DT).pose, []
     assert 0.0 < np.abs(shown.upper - last.upper).max() <= 1.5 * DT + 1e-9
     for back in gone_back(retracing):
         assert np.abs(back.upper - shown.upper).max() <= 1.5 * DT + 1e-9
@@ -101,7 +101,7 @@ def test_who_dithers_where_he_finds_no_way_still_knows_how_he_came() -> None:
 def test_a_second_on_the_spot_is_remembered_and_where_it_was_cut() -> None:
     retracing, poses = walked(200)
     last = dithered(retracing, poses[-1], 0.2)
-    assert retracing.came(last, DT) is None
+    assert retracing.arrival(last, DT) is None
     last = dithered(retracing, last, 12.0)
     for _ in range(60 * 4):
         retracing.wait(last, DT, on_the_way=True)

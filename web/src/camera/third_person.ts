@@ -68,7 +68,7 @@ export class ThirdPersonCamera {
   private shift: ViewShift = NO_SHIFT;
   private shiftedYaw = 0;
   private shiftedPitch = 0;
-  private readonly glances = new Glances();
+  private glances = new Glances();
   /** How far the last look went, along the arm, metres. */
   private seen = Infinity;
   private recentering = false;
@@ -150,6 +150,7 @@ export class ThirdPersonCamera {
     this.shift = NO_SHIFT;
     this.shiftedYaw = this.shiftedPitch = 0;
     this.seen = Infinity;
+    this.glances = new Glances();
     this.arm = this.zoomed = this.aim.distance;
   }
 

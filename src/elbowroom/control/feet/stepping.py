@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.dof import LOWERING, DofGroup, columns_of
+from elbowroom.body.fitting.fit import MARGIN
 from elbowroom.body.gait.foot_state import standing
 from elbowroom.body.gait.footholds import UNKNOWN, beside, settled
 from elbowroom.body.gait.gliding import gliding
@@ -41,7 +42,6 @@ _SAME = 1e-9  # metres and radians
 _STRAIN = 0.3  # half leg lengths that hips come down, beyond the stride, to a foot that waits
 _TWIST, _HEAD_TURN = (columns_of(group).start + 1 for group in (DofGroup.WAIST, DofGroup.HEAD))
 _NOT_AT_ALL = -1.0  # metres of room in which hips are where they were planned at once
-_SKIN = 0.01  # metres: nearly all of the surface is within so much of the capsules (`body/fitting/coverage.py`)
 _FARTHER = 0.002  # metres that another way has to keep off more, to be taken for it
 _LONG = 60.0  # seconds in which feet have glided wherever they were planned
 
@@ -167,10 +167,10 @@ class Stepping:
         near = list[tuple[float, Playback]]()
         for way in ways:
             room = moment.room_above(way.root, way.upper)
-            if room >= _SKIN and not near:
+            if room >= MARGIN and not near:
                 yield way
             else:
-                near.append((min(room, _SKIN), way))
+                near.append((min(room, MARGIN), way))
         while near:
             best = 0
             for n, (room, _) in enumerate(near):
@@ -214,7 +214,7 @@ class Stepping:
             if upper is not posed.upper:
                 as_planned += self._less_apart(posed._replace(root=root))
             pose = posed._replace(root=root, upper=upper)
-            if moment.look(root, upper).room < _SKIN:
+            if moment.look(root, upper).room < MARGIN:
                 close.append(pose)
             else:
                 yield pose

@@ -13,6 +13,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from elbowroom.body.fitting.fit import MARGIN
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.root import RootState
 from elbowroom.clips.motion_set import MotionSet
@@ -30,7 +31,6 @@ from elbowroom.world.scene import Scene
 Floats = NDArray[np.float64]
 
 _SLOWER = 0.4  # of the speed that is asked for
-_SPARE = 0.01  # metres: so far skin may be outside of capsules, and is where feet are raised high
 _ASKS = 0.1  # of full speed: who asks for less may as well stand
 _ON = 0.1  # metres that a plan must lead on
 _AGAIN = 1.0  # seconds until one looks again whether one can climb
@@ -49,10 +49,13 @@ class Grounds:
 
     @cached_property
     def climbed(self) -> PlanningScene | None:
-        """Where it climbs, made when it is first looked for; None where that leads no farther."""
+        """Where it climbs, made when it is first looked for; None where that leads no farther.
+
+        So far skin may be outside of capsules, and is where feet are raised high: that much is spared.
+        """
         humanoid, scene, settings, motions = self._made_of
         climbed = as_climbed(scene, humanoid)
-        return None if climbed is None else PlanningScene(humanoid, climbed, settings, motions, _SPARE)
+        return None if climbed is None else PlanningScene(humanoid, climbed, settings, motions, MARGIN)
 
     def around(self, *, climbs: bool) -> PlanningScene:
         """Where it walks, or climbs, if that leads anywhere else."""

@@ -74,9 +74,9 @@ class Retracing:
         self._length += past.seconds
         self._here, self._dithered = self._here + 1, self._dithered + past.seconds
         while self._dithered > _DITHERED and self._here > 2:
-            came = len(self._trail) - self._here
-            self._trail[came] = self._trail[came]._replace(joined=False)
-            self._forget(came + 1)
+            arrival = len(self._trail) - self._here
+            self._trail[arrival] = self._trail[arrival]._replace(joined=False)
+            self._forget(arrival + 1)
         while self._length > _REMEMBERED:
             self._forget(0)
 
@@ -122,7 +122,7 @@ class Retracing:
             self._left -= seconds
         self._end_where_it_ends()
 
-    def came(self, shown: Playback, dt: float) -> Past | None:
+    def arrival(self, shown: Playback, dt: float) -> Past | None:
         """The pose in which one came to the spot where one is; None where it is as soon shown by going back to it."""
         found, seconds = None, 0.0
         for past in reversed(self._trail):
@@ -134,7 +134,7 @@ class Retracing:
         return found
 
     def go_straight(self, shown: Playback, to: Past, dt: float) -> Past:
-        """Remember arms that go straight to what one `came` with, in place of all in between; what is next on this way.
+        """Remember arms that go straight to those of the `arrival`, in place of all between; what is next on this way.
 
         It begins with what is `shown`.
         """

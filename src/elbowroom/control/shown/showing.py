@@ -5,6 +5,7 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
+from elbowroom.body.fitting.fit import MARGIN
 from elbowroom.body.gait.footholds import UNKNOWN
 from elbowroom.body.root import RootState
 from elbowroom.control.feet.feet import Around, Moment
@@ -22,7 +23,6 @@ Floats32 = NDArray[np.float32]
 
 _SETTLING = (1.0, 0.2, 0.04)  # of a turn, by which legs come to a stand; less where that is not proven free
 _TO_BEGIN = 0.002  # metres that a plan needs about the pose in which it begins: of what it has it may lose the half
-_SKIN = 0.01  # metres: so far that of bent legs may be outside of their capsules
 _BREATHES = 1 / 31  # seconds: who rests need not move in every frame
 _AGAIN = 0.1  # seconds: where legs have come no nearer to a stand it is not tried again sooner
 
@@ -120,9 +120,9 @@ class Showing:
         if before is None:
             self._posed_at = self._now
             return
-        came = self._retracing.came(self._pose, dt)
-        if came is not None and self._goes_straight(came.pose):
-            before = self._retracing.go_straight(self._pose, came, dt)
+        arrival = self._retracing.arrival(self._pose, dt)
+        if arrival is not None and self._goes_straight(arrival.pose):
+            before = self._retracing.go_straight(self._pose, arrival, dt)
         elif not before.joined:
             self._retracing.forget()
             return
@@ -239,12 +239,15 @@ class Showing:
         return check.leaves_room(frames) and check.free_between(frames)
 
     def _leaves_knees_room(self, posed: Playback) -> bool:
-        """Whether what the skin about bent knees needs is left, or as much as there was, where legs go up and down."""
+        """Whether skin that may be outside of its capsules has room about bent knees, or as much as there was.
+
+        Asked where legs go up and down.
+        """
         check, shown = self._around.check, self._pose
         if check.footing.plain or self.holding.active:
             return True
         room = check.room_about_knees(posed.root, posed.upper)
-        return room >= _SKIN or room >= check.room_about_knees(shown.root, shown.upper)
+        return room >= MARGIN or room >= check.room_about_knees(shown.root, shown.upper)
 
     def _show(self, pose: Playback, clearance: float, *, back: bool = False) -> None:
         if clearance < 0.0 or self._clearance < 0.0 or not self.assist:
