@@ -46,6 +46,18 @@ def test_no_panel_lies_on_another(open_page: Open) -> None:
             assert [other for other in found if other != one and overlap(box, found[other])] == [], (one, width)
 
 
+def test_the_card_at_the_finish_lies_on_no_panel(open_page: Open) -> None:
+    live = open_page("scene=empty", viewport=SIZES[0])
+    live.page.evaluate("document.querySelector('#finish').hidden = false")
+    for width, height in (*SIZES, (915, 412)):
+        live.page.set_viewport_size({"width": width, "height": height})
+        live.settle_panels()
+        card = live.page.locator("#finish").bounding_box()
+        assert card is not None
+        found = {name: box for name, box in boxes(live).items() if name in ("#brand", "#bar", "#hud")}
+        assert [name for name, box in found.items() if overlap(box, card)] == [], (width, height)
+
+
 def test_h_and_the_address_hide_everything_but_the_world(open_page: Open) -> None:
     live = open_page("scene=empty")
     assert "#bar" in boxes(live)
