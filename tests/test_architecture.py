@@ -28,7 +28,16 @@ ROOMS = [
 ]
 # Of `planning/exact`, bottom to top.
 CHAPTERS = ["memory", "lattice", "sweep", "group", "joint", "refine", "certificate", "plan"]
-FOR_ALL = {"errors", "jit", "kernel_cache", "kernel_turns", "kernel_bitcode", "kept_kernels", "kept_arrays"}
+FOR_ALL = {
+    "errors",
+    "jit",
+    "by_reference",
+    "kernel_cache",
+    "kernel_turns",
+    "kernel_bitcode",
+    "kept_kernels",
+    "kept_arrays",
+}
 
 
 def imported_modules(path: Path) -> Iterator[str]:

@@ -8,14 +8,24 @@ from hypothesis import event, given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
+from elbowroom.body.dof import DofGroup
+from elbowroom.body.humanoid import Humanoid
+from elbowroom.body.pose.kinematics import body_model
 from elbowroom.jit import exact_kernel
 from elbowroom.planning.exact.lattice.dynamic_programming import cheapest_path, settle_backward, widen
 from elbowroom.planning.exact.lattice.lattice import BACK, EXTRA, HOLD, Lattice, Work, new_work
 from elbowroom.planning.exact.lattice.paths import traced
-from elbowroom.planning.exact.lattice.postures import BLOCK, spans_of
+from elbowroom.planning.exact.lattice.postures import BLOCK, Postures, postures_of, spans_of
+from elbowroom.planning.model.limb import limb_of
 
 STEP, WEIGHT, HORIZON = 0.8, 1.5, 3
 INF = np.float32(np.inf)
+SOME = postures_of(limb_of(body_model(Humanoid.default()), DofGroup.WAIST), np.zeros((1, DofGroup.WAIST.size)), STEP)
+
+
+def with_moves(postures: Postures, moves: NDArray[np.float32]) -> Postures:
+    """The same with other edges."""
+    return postures._replace(moves=moves, spans=spans_of(moves))
 
 
 def random_lattice(seed: int, size: int = 3, extras: int = 2, horizon: int = HORIZON) -> Lattice:
@@ -25,33 +35,31 @@ def random_lattice(seed: int, size: int = 3, extras: int = 2, horizon: int = HOR
     postures = rng.uniform(-0.5, 0.5, (size, width))
     postures = postures[np.argsort(postures[:, 0])]
     squares = np.sum((postures[:, None] - postures) ** 2, axis=2)
-    moves = np.full((size, lanes), INF)
-    moves[:, :size] = np.where(squares <= STEP**2, squares, np.inf)
+    moves = np.full((size, lanes), INF, np.float32)
+    moves[:, :size] = np.where(squares <= STEP**2, squares, INF)
     cost = rng.uniform(0.0, 1.0, (horizon + 1, lanes + EXTRA)).astype(np.float32)
     cost[rng.random(cost.shape) < rng.uniform(0.0, 0.6)] = INF
     cost[:, size:lanes], cost[:, lanes + extras :] = INF, INF
     closed = rng.random((horizon, lanes + EXTRA, lanes + EXTRA)) < rng.choice([0.0, 0.4])
     columns = np.ascontiguousarray(postures[np.minimum(np.arange(lanes), size - 1)].T, np.float32)
     return Lattice(
-        postures=postures,
-        columns=columns,
-        moves=moves.astype(np.float32),
-        spans=spans_of(moves.astype(np.float32)),
+        postures=with_moves(
+            SOME._replace(configurations=postures, columns=columns, step=STEP), moves.astype(np.float32)
+        ),
         extras=rng.uniform(-0.5, 0.5, (horizon + 1, EXTRA, width)),
         goals=rng.uniform(-0.3, 0.3, (horizon + 1, width)),
         cost=cost,
         masks=np.where(rng.random(horizon) < 0.6, np.arange(horizon), -1),
         closed=closed,
         previous=rng.integers(0, size, horizon + 1),
-        step=STEP,
         weight=WEIGHT,
     )
 
 
 def posture_of(lattice: Lattice, depth: int, node: int) -> NDArray[np.float64]:
     """The configuration (d,) of a node."""
-    width = lattice.moves.shape[1]
-    posture: NDArray[np.float64] = lattice.postures[node] if node < width else lattice.extras[depth, node - width]
+    width, known = lattice.postures.moves.shape[1], lattice.postures.configurations
+    posture: NDArray[np.float64] = known[node] if node < width else lattice.extras[depth, node - width]
     return posture
 
 
@@ -71,7 +79,7 @@ def step_price(lattice: Lattice, depth: int, source: int, target: int) -> float:
 
 def every_way(lattice: Lattice) -> tuple[int, float]:
     """The deepest depth that has a way, and the least cost of a way to it."""
-    horizon, size = len(lattice.goals) - 1, len(lattice.postures)
+    horizon, size = len(lattice.goals) - 1, len(lattice.postures.configurations)
     nodes = [*range(size), *range(BLOCK, BLOCK + EXTRA)]
     start = BLOCK + HOLD
     costs = {
@@ -124,12 +132,12 @@ def test_going_on_after_steps_were_closed_equals_beginning_anew(seed: int) -> No
 @given(st.integers(0, 10_000))
 def test_nothing_is_missed_beyond_the_spans_of_steps(seed: int) -> None:
     lattice = random_lattice(seed, size=70, extras=EXTRA, horizon=6)
-    near = np.where(lattice.moves <= 0.1, lattice.moves, INF)
-    lattice = lattice._replace(moves=near, spans=spans_of(near))
-    assert np.ptp(lattice.spans, axis=1).min() < near.shape[1]
+    near = np.where(lattice.postures.moves <= 0.1, lattice.postures.moves, INF)
+    postures = with_moves(lattice.postures, near)
+    assert np.ptp(postures.spans, axis=1).min() < near.shape[1]
     found = []
-    for spans in (lattice.spans, np.tile([0, near.shape[1]], (len(near), 1))):
-        work, everywhere = work_for(lattice), lattice._replace(spans=spans)
+    for spans in (postures.spans, np.tile([0, near.shape[1]], (len(near), 1))):
+        work, everywhere = work_for(lattice), lattice._replace(postures=postures._replace(spans=spans))
         reached, _ = cheapest_path(everywhere, work, 0, False)
         settle_backward(everywhere, work, 0, np.inf if reached < 6 else float(work.costs[6].min()) + 0.5)
         found.append((reached, traced(everywhere, work, reached), work.costs[: reached + 1], work.onward))

@@ -67,7 +67,7 @@ def step_feet(
     known of that it keeps its velocities; and so many metres `farther` (2,) ahead. With `dt` 0 nothing moves over the
     ground, a swinging foot neither.
     """
-    legs, scale, own = who
+    legs, scale, own = who.legs, who.scale, who.own
     carry(before, root, out)
     if dt <= 0.0:
         return
@@ -112,7 +112,7 @@ def landing(
 
     `coming` (m, 8), seconds from the row, and `farther` (2,) are as in `step_feet`; `later` (7,) is scratch.
     """
-    legs, scale, own = who
+    legs, scale, own = who.legs, who.scale, who.own
     foot, twin = row[ROOT_STATE + FOOT * side :], row[ROOT_STATE + FOOT * (1 - side) :]
     stride = own_stride_at(own, scale, row)
     left = max(time_to_landing(own, legs, stride, side, row, foot, twin, 0.0), 0.0)

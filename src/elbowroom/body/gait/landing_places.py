@@ -10,6 +10,7 @@ from elbowroom.body.gait.foot_state import SWING, VELOCITY, YAW, X, Z, rests
 from elbowroom.body.gait.own_steps import OwnSteps, own_detour, own_home, own_stride_at
 from elbowroom.body.gait.roll import straight_part
 from elbowroom.body.root import ROOT_STATE
+from elbowroom.by_reference import by_reference
 from elbowroom.jit import inner_exact_kernel
 
 Floats = NDArray[np.float64]
@@ -24,6 +25,7 @@ _BOUND, _BINDING = 0.75, 0.1  # of a swing: from then on a foot goes on to where
 _MORE = 0.15  # m/s by which a stance may be longer than that of an even walk
 
 
+@by_reference
 class Stepper(NamedTuple):
     """Whose feet step."""
 
@@ -71,7 +73,7 @@ def place_under(
     Under the root in the middle of its stance, and no farther from the root than in an even walk. `coming` (m, 8) is as
     in `footholds.step_feet`; `later` (7,) is scratch.
     """
-    legs, scale, own = who
+    legs, scale, own = who.legs, who.scale, who.own
     _root_later(root, coming, left, later)
     stride = own_stride_at(own, scale, later)
     half = 0.0 if rests(later) else 0.5 * stride.duty * stride.period

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from elbowroom.body.gait.cycle import Stride, home_of, stride_at
 from elbowroom.body.gait.own_stride import GROWTH, WIDEST
 from elbowroom.body.gait.roll import ahead_part, stepping_roll
+from elbowroom.by_reference import by_reference
 from elbowroom.jit import helper, inner_kernel, kernel, plain
 
 Floats = NDArray[np.float64]
@@ -25,6 +26,7 @@ AHEAD, ASIDE, YAW, PITCH, LIFT = map(plain, range(5))  # columns of a cycle
 PATH = 5
 
 
+@by_reference
 class OwnSteps(NamedTuple):
     """The recorded steps of the left and the right foot; lengths in metres of a standard leg."""
 

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from elbowroom.body.gait.carriage import about_left, carried_turns, hips_turn, leant_by, shifted_by
 from elbowroom.body.gait.cycle import hips_sink
 from elbowroom.body.root import HEIGHT, WITH_FEET
+from elbowroom.by_reference import by_reference
 from elbowroom.jit import brief_kernel, helper, inner_kernel, kernel, plain
 
 Floats = NDArray[np.float64]
@@ -71,6 +72,7 @@ class Arm(NamedTuple):
     first: int  # the place of the flexion in a configuration `q`
 
 
+@by_reference
 class Chain(NamedTuple):
     """The joints of one group and the capsules on them, beginning at the joint that the group hangs on."""
 

@@ -15,6 +15,7 @@ from elbowroom.body.gait.landing_places import Stepper
 from elbowroom.body.gait.living import Body, live
 from elbowroom.body.pose.whole_body import WholeBody, posed_capsules
 from elbowroom.body.root import ROOT_STATE, SHOWN, WITH_FEET
+from elbowroom.by_reference import by_reference
 from elbowroom.control.feet.treading import step_on, tread_gliding
 from elbowroom.control.shown.standing_about import ShownBody, lift_feet
 from elbowroom.jit import brief_exact_kernel, inner_exact_kernel, plain
@@ -41,6 +42,7 @@ class ArmsAndLegs(NamedTuple):
     allowed: Floats32  # (P,) metres: as near the axes may come
 
 
+@by_reference
 class Follower(NamedTuple):
     """What is to be known of one body."""
 
@@ -83,9 +85,9 @@ def followed(
     As `Followed`. Feet step to where the root is to come, or glide into the walking cycle, `how` says which; that is
     raised as `root` tells. `coming` (m, 8) is as in `step_feet`, `room` as in `live`.
     """
-    row, planned, (legs, scale, _) = np.empty(SHOWN), root[:ROOT_STATE].copy(), who.feet
+    row, planned, feet = np.empty(SHOWN), root[:ROOT_STATE].copy(), who.feet
     if how != STEPS:
-        glide_feet(legs, scale, before, planned, dt, how == HOLDS, row[:WITH_FEET])
+        glide_feet(feet.legs, feet.scale, before, planned, dt, how == HOLDS, row[:WITH_FEET])
         if not who.under.ground.plain:
             tread_gliding(who.under, before, row, dt, how == HOLDS)
     else:

@@ -142,7 +142,7 @@ def _set_farther(
 
     Than they are meant to: one that is bound for a place already has been told, and goes where it was going.
     """
-    row, (legs, scale, own) = np.empty(WITH_FEET), who
+    row, legs, scale, own = np.empty(WITH_FEET), who.legs, who.scale, who.own
     stride = own_stride_at(own, scale, root)
     carry(before, root, row)
     for side in range(2):

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from elbowroom.body.dof import DOF, LOCAL
 from elbowroom.body.pose.whole_body import WholeBody, posed_capsules, posed_legs
 from elbowroom.body.root import HEIGHT, RISES, ROOT_STATE
+from elbowroom.by_reference import by_reference
 from elbowroom.jit import brief_exact_kernel, inner_exact_kernel, plain
 from elbowroom.planning.halving import begun, due, settle
 from elbowroom.planning.model.footing import IN_GROUND
@@ -31,6 +32,7 @@ _ZERO: Any = np.float32(0.0)
 _DEEP: Any = np.float32(IN_GROUND)
 
 
+@by_reference
 class ShownBody(NamedTuple):
     """What is to be known of one body on some ground."""
 

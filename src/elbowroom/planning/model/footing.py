@@ -19,6 +19,7 @@ from elbowroom.body.dof import DOF
 from elbowroom.body.gait.cycle import stood_places
 from elbowroom.body.pose.kinematics import BodyModel, CapsuleSet, leg_capsules, posture_capsules
 from elbowroom.body.root import HEIGHT, RISES, ROOT_STATE
+from elbowroom.by_reference import by_reference
 from elbowroom.jit import brief_exact_kernel, exact_kernel, helper, inner_exact_kernel
 from elbowroom.world.ground.ground import PLAIN, Ground, Sole, height_along, level_about, sole_on, under_body
 from elbowroom.world.ground.swept import set_highest_under
@@ -46,6 +47,7 @@ _TIMES = np.arange(1.0, _LOOKS) / _LOOKS
 _GONE = _TIMES * _TIMES * (3.0 - 2.0 * _TIMES)  # how much of its way a foot has gone at those times of its swing
 
 
+@by_reference
 class Underfoot(NamedTuple):
     """What feet stand on, for kernels that call `set_rises`."""
 

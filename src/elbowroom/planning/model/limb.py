@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from elbowroom.body.dof import CHILDREN, DofGroup
 from elbowroom.body.pose import posing
 from elbowroom.body.pose.kinematics import BodyModel, chest_frames, group_capsules
+from elbowroom.by_reference import by_reference
 from elbowroom.geometry import quaternion
 from elbowroom.jit import exact_kernel, inner_exact_kernel, plain
 from elbowroom.planning.model.self_contact import allowed_distances
@@ -23,6 +24,7 @@ Indices = NDArray[np.int64]
 _FIRST = plain(0)  # place in a row of capsules
 
 
+@by_reference
 class Limb(NamedTuple):
     """What posing one local group needs of a `BodyModel`, and what it must keep off however the body stands."""
 

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from elbowroom.body.dof import CHILDREN, DOF, LOCAL, SEARCH_ORDER, DofGroup, columns_of
 from elbowroom.body.pose.kinematics import BodyModel, chest_frames, pelvis_frames, posture_capsules
 from elbowroom.body.root import ROOT_STATE
+from elbowroom.by_reference import by_reference
 from elbowroom.jit import kernel
 from elbowroom.planning.goal import GoalFunction, natural_walk
 from elbowroom.planning.model.axis_distances import clear_pairs, pair_clearances
@@ -33,6 +34,7 @@ _SPEEDS = (0.0, 0.6, 1.1, 2.2)  # m/s of the natural walk
 _PHASES = 16
 
 
+@by_reference
 class SelfPairs(NamedTuple):
     """One avatar's own body: the parts of its groups that must not run into each other, by the table of groups."""
 

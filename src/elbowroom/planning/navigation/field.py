@@ -9,6 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from elbowroom.by_reference import by_reference
 from elbowroom.jit import brief_exact_kernel, exact_kernel, helper, inner_exact_kernel, plain
 from elbowroom.planning.heap import pop, push
 from elbowroom.planning.navigation.surfaces import Surfaces, beside, onto
@@ -49,6 +50,7 @@ class Field(NamedTuple):
     onward: Points  # (N,) the place to go on to; -1 at the place itself and where there is no way
 
 
+@by_reference
 class Costly(NamedTuple):
     """Places, the room at each, and what a metre costs."""
 

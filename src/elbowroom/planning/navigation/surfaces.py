@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from elbowroom.by_reference import by_reference
 from elbowroom.jit import exact_kernel, helper
 from elbowroom.world.ground.ground import Ground, heights_at
 
@@ -20,6 +21,7 @@ _SIDES = np.array([[1, 0], [0, 1], [-1, 0], [0, -1], [1, 1], [1, -1], [-1, 1], [
 _BETTER = 1e-9  # cells
 
 
+@by_reference
 class Surfaces(NamedTuple):
     """N places, those over a point from the lowest up, the points row by row."""
 

@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from elbowroom.body.clips.clip import MotionClip
 from elbowroom.body.dof import MAX_ELEVATION, DofGroup, clamp, limits
+from elbowroom.by_reference import by_reference
 from elbowroom.errors import InputError
 from elbowroom.jit import exact_kernel, inner_exact_kernel
 
@@ -26,6 +27,7 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.int32]
 
 
+@by_reference
 class GraphArrays(NamedTuple):
     """The graph as compiled code sees it. Rows 0..size-1 are the graph's, rows from `capacity` on are visitors."""
 

@@ -14,6 +14,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from elbowroom.by_reference import by_reference
 from elbowroom.jit import exact_kernel, inner_exact_kernel
 from elbowroom.planning.model.limb import Limb, pose
 from elbowroom.planning.paper.activity_graph import VISITORS, ActivityGraph, GraphArrays
@@ -25,6 +26,7 @@ Floats32 = NDArray[np.float32]
 _REACH = 2.0  # a stretched limb reaches at most so much farther than the farthest reaching vertex that we know
 
 
+@by_reference
 class RoadmapArrays(NamedTuple):
     """The roadmap as compiled code sees it; columns of `clearances` are the rows of the graph's arrays."""
 

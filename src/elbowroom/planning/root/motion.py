@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from elbowroom.body.gait.cycle import climbing_rate
 from elbowroom.body.root import HEIGHT, RISES
+from elbowroom.by_reference import by_reference
 from elbowroom.jit import exact_kernel, helper, inner_exact_kernel, plain
 from elbowroom.planning.root.path import interpolate_between, interpolate_root, rates_at
 from elbowroom.world.ground.ground import PLAIN, Ground, eased_height
@@ -35,6 +36,7 @@ NONE_SLOW = np.empty((0, 3))  # slow places where none is
 _NOWHERE, _AWAY = 0.02, 0.05  # metres, radians: who gets no farther stands
 
 
+@by_reference
 class MotionBounds(NamedTuple):
     """The bounds that the kernels need."""
 

@@ -15,6 +15,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from elbowroom.by_reference import by_reference
 from elbowroom.jit import brief_exact_kernel, exact_kernel, helper, inner_exact_kernel
 
 Floats = NDArray[np.float64]
@@ -43,6 +44,7 @@ _CARRIED = 0.24  # of a step that a body is above the ground at its place, in th
 _UNEVEN = 0.02  # metres: a sole that would have more air under it lies level
 
 
+@by_reference
 class Ground(NamedTuple):
     """Surfaces over the cells of a grid; `ground_of` a scene makes it. Metres."""
 

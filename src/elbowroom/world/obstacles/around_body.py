@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from elbowroom.by_reference import by_reference
 from elbowroom.jit import brief_kernel, helper
 from elbowroom.world.obstacles.broad_phase import Grids, meeting_any_order
 from elbowroom.world.obstacles.clearance import lower_each
@@ -22,6 +23,7 @@ _NEAR, _WIDER, _FAR = 0.5, 4.0, 1e6  # metres: where is looked first, how many t
 _INFINITE: Any = np.float32(np.inf)
 
 
+@by_reference
 class Standing(NamedTuple):
     """All that stands, B obstacles, and how to find what is near."""
 

@@ -9,6 +9,7 @@ from functools import cached_property
 from typing import NamedTuple
 
 from elbowroom.body.dof import CHILDREN, LOCAL_GROUPS, DofGroup
+from elbowroom.by_reference import by_reference
 from elbowroom.planning.exact.group.problem import Group
 from elbowroom.planning.exact.group.upper_body_model import PostureSet, UpperBodyModel
 from elbowroom.planning.exact.memory.known_rises import new_known_rises
@@ -27,6 +28,7 @@ from elbowroom.planning.model.footing import Underfoot
 _CACHED = 5  # times the horizon: as many results of key intervals are remembered
 
 
+@by_reference
 class GroupCache(NamedTuple):
     """One group and the results that its searches use and add to."""
 

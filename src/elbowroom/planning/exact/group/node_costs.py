@@ -14,7 +14,7 @@ from elbowroom.planning.exact.sweep.node_clearances import (
     HELD_EARLY,
     HELD_LATE,
     NodeClearances,
-    held_clearance_in,
+    held_clearance,
     interval_clearances,
 )
 from elbowroom.planning.exact.sweep.scratch import Scratch
@@ -49,7 +49,7 @@ def node_costs(
     most, checks, obstacles, goals = np.inf, 0, task.obstacles, task.goals
     if not task.settled:
         places, turns, near = carriers.places[0], carriers.turns[0], at_span(obstacles, 0)
-        clearance, checks = held_clearance_in(scratch, postures, task.start, places, turns, near, HELD_AT_START)
+        clearance, checks = held_clearance(scratch, postures, task.start, places, turns, near, HELD_AT_START)
         most = max(0.5 * clearance, 0.0)
     clear, count = _clearances(scratch, postures, tables, carriers, goals, obstacles, extras)
     margins = np.minimum(task.margins, most)
@@ -86,7 +86,7 @@ def _clearances(
             for end in range(2):
                 if needed[k + end, e]:
                     part, posture = HELD_EARLY if end == 0 else HELD_LATE, own[k + end, e]
-                    found, count = held_clearance_in(scratch, postures, posture, places, turns, near, part)
+                    found, count = held_clearance(scratch, postures, posture, places, turns, near, part)
                     checks += count
                     clear[k + end, width + e] = min(clear[k + end, width + e], found)
     return clear, checks

@@ -5,6 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from elbowroom.by_reference import by_reference
 from elbowroom.planning.exact.lattice.extra_nodes import ExtraNodes, extra_nodes
 from elbowroom.planning.exact.lattice.postures import Postures
 from elbowroom.planning.exact.sweep.motion_bounds import LimbSweeps
@@ -16,6 +17,7 @@ Floats32 = NDArray[np.float32]
 Longs = NDArray[np.int64]
 
 
+@by_reference
 class Group(NamedTuple):
     """One group for a key interval: its postures, its limits, and what was computed for them."""
 

@@ -25,7 +25,7 @@ from elbowroom.planning.exact.memory.cache_index import begin_round
 from elbowroom.planning.exact.sweep.edges import MOST_EDGES, close_edges, close_near, promising_edges
 from elbowroom.planning.exact.sweep.motion_bounds import LimbSweeps
 from elbowroom.planning.exact.sweep.proof import MovedLimb, limb_sweep
-from elbowroom.planning.exact.sweep.scratch import Scratch, new_scratch
+from elbowroom.planning.exact.sweep.scratch import Scratch
 from elbowroom.planning.halving import ENOUGH
 from elbowroom.world.obstacles.layout import Spans
 from elbowroom.world.obstacles.rows import at_span
@@ -96,16 +96,12 @@ def _closing(lattice: Lattice, edges: ClosedEdges) -> Lattice:
     """The same lattice with other tables of closed edges."""
     return Lattice(
         lattice.postures,
-        lattice.columns,
-        lattice.moves,
-        lattice.spans,
         lattice.extras,
         lattice.goals,
         lattice.cost,
         edges.tables,
         edges.closed,
         lattice.previous,
-        lattice.step,
         lattice.weight,
     )
 
@@ -149,9 +145,9 @@ def _close_promising(
 
     Of the intervals with a table, from `first` on. Returns the capsules checked.
     """
-    scratch, _, limb, carriers, obstacles, margins, _, _ = question
+    scratch, _, _, carriers, obstacles, margins, _, _ = question
     tables, _, seen, slack = edges
-    postures, places, turns = limb.postures, carriers.places, carriers.turns
+    places, turns = carriers.places, carriers.turns
     pairs, checks = np.empty((MOST_EDGES, 2), np.int64), 0
     for k in range(first, margins.shape[0]):
         at = tables[k]
@@ -161,48 +157,43 @@ def _close_promising(
                 slack[at] *= 0.5  # there are more of them: the same once again
             if count:
                 carrier, near = (places[k], turns[k]), at_span(obstacles, k)
-                checks += close_edges(scratch, postures, lattice, k, pairs[:count], carrier, near, margins[k])
+                checks += close_edges(scratch, lattice, k, pairs[:count], carrier, near, margins[k])
     return checks
 
 
 @helper
 def _begun(
-    cache: GroupCache, task: GroupTask, weights: Weights, edges: ClosedEdges
+    scratch: Scratch, cache: GroupCache, task: GroupTask, weights: Weights, edges: ClosedEdges
 ) -> tuple[_Question, Lattice, float, int]:
     """The lattice of a task with its nodes' costs, all edges open, and what the search works on.
 
     Also the greatest clearance that may be asked for, and the capsules checked.
     """
-    group, roots, waists, chain = cache
-    postures, levers, _, speed, acceleration, tables, sweeps = group
+    group, chain, postures, tables = cache.group, cache.chain, cache.group.postures, cache.group.tables
     obstacles, goals = task.obstacles, task.goals
-    scratch = new_scratch(postures, chain.waist, at_span(obstacles, 0))
-    carriers = carriers_of(roots, waists, task.roots, task.carriers, postures.limb.chain.carries)
+    carriers = carriers_of(cache.roots, cache.waists, task.roots, task.carriers, postures.limb.chain.carries)
     begin_round(tables.entries)
     extras = extra_nodes(
         postures.configurations, postures.columns, postures.step, goals, task.previous, task.start, task.settled
     )
     cost, most, checks = node_costs(scratch, postures, tables, carriers, task, weights, extras)
     lattice = Lattice(
-        postures.configurations,
-        postures.columns,
-        postures.moves,
-        postures.spans,
+        postures,
         extras.postures,
         goals,
         cost,
         edges.tables,
         edges.closed,
         extras.previous,
-        postures.step,
         weights.step,
     )
-    margins, limb = np.minimum(task.motion_margins, most), MovedLimb(postures, levers, chain)
-    return _Question(scratch, sweeps, limb, carriers, obstacles, margins, speed, acceleration), lattice, most, checks
+    margins, limb = np.minimum(task.motion_margins, most), MovedLimb(postures, group.levers, chain)
+    question = _Question(scratch, group.sweeps, limb, carriers, obstacles, margins, group.speed, group.acceleration)
+    return question, lattice, most, checks
 
 
 @exact_kernel
-def search_group(cache: GroupCache, task: GroupTask, weights: Weights) -> GroupPath:
+def search_group(scratch: Scratch, cache: GroupCache, task: GroupTask, weights: Weights) -> GroupPath:
     """The cheapest path whose motion is free as shown, at every moment.
 
     It begins gently; if there is no such path, and the task allows it, it begins as hard as it takes.
@@ -211,7 +202,7 @@ def search_group(cache: GroupCache, task: GroupTask, weights: Weights) -> GroupP
     limits, most_rounds = cache.group.limits, weights.rounds
     horizon, row = goals.shape[0] - 1, cache.group.postures.moves.shape[1] + EXTRA
     work, edges = new_work(horizon + 1, row), new_closed_edges(horizon, row)
-    question, lattice, most, checks = _begun(cache, task, weights, edges)
+    question, lattice, most, checks = _begun(scratch, cache, task, weights, edges)
     entries = np.empty(horizon, np.int64)
     touches, stiff = np.zeros(horizon, np.bool_), np.empty(horizon + 1, np.bool_)
     first, deepest, spent, settled, gentle, harsh = _BEGIN, 0, most_rounds, 0, _GENTLY, False

@@ -63,7 +63,8 @@ def _settle(lattice: Lattice, work: Work, depth: int, most: float) -> int:
 
     Returns how many nodes there have a path.
     """
-    size, width = lattice.postures.shape[0], lattice.moves.shape[1]
+    moves, spans = lattice.postures.moves, lattice.postures.spans
+    size, width = moves.shape
     out, origins = work.costs[depth + 1], work.parents[depth + 1]
     targets, target_origins = out[:width], origins[:width]
     out[:] = _INFINITE
@@ -76,8 +77,8 @@ def _settle(lattice: Lattice, work: Work, depth: int, most: float) -> int:
     for node in range(width + EXTRA):
         if base[node] == _INFINITE:
             continue
-        row = lattice.moves[node] if node < size else work.squares[depth, node - width]
-        low, high = (lattice.spans[node, 0], lattice.spans[node, 1]) if node < size else (_FIRST, width)
+        row = moves[node] if node < size else work.squares[depth, node - width]
+        low, high = (spans[node, 0], spans[node, 1]) if node < size else (_FIRST, width)
         if mask >= 0:
             _relax_open(
                 targets[low:high],
@@ -104,7 +105,7 @@ def _settle(lattice: Lattice, work: Work, depth: int, most: float) -> int:
 @helper
 def _settle_extra(lattice: Lattice, work: Work, depth: int, f: int, base: Floats32) -> tuple[Any, int]:
     """The least cost of reaching extra node `f` of the next depth, without its own, and the node before it."""
-    width, weight = lattice.moves.shape[1], np.float32(lattice.weight)
+    width, weight = lattice.postures.moves.shape[1], np.float32(lattice.weight)
     best, origin, row = _INFINITE, -1, work.squares[depth + 1, f]
     mask = lattice.masks[depth]
     closed = lattice.closed[mask]
@@ -127,7 +128,7 @@ def _settle_from(lattice: Lattice, work: Work, begin: int, most: float) -> tuple
     work.most[0] = most
     if begin == 0:
         work.costs[0] = _INFINITE
-        work.costs[0, lattice.moves.shape[1] + HOLD] = 0.0
+        work.costs[0, lattice.postures.moves.shape[1] + HOLD] = 0.0
     reached, nodes = begin, 0
     for depth in range(begin, lattice.goals.shape[0] - 1):
         count = _settle(lattice, work, depth, most - work.least[depth])
@@ -180,7 +181,8 @@ def settle_backward(lattice: Lattice, work: Work, until: int, most: float) -> No
 
     Nodes that no path of at most the cost `most` leads through are left out.
     """
-    size, width, weight = lattice.postures.shape[0], lattice.moves.shape[1], lattice.weight
+    moves, spans, weight = lattice.postures.moves, lattice.postures.spans, lattice.weight
+    size, width = moves.shape
     base, slopes, origins, column, limit = work.base, work.slopes, work.origins, work.closed, np.float32(most)
     work.onward[lattice.goals.shape[0] - 1] = 0.0
     for depth in range(lattice.goals.shape[0] - 2, until - 1, -1):
@@ -195,8 +197,8 @@ def settle_backward(lattice: Lattice, work: Work, until: int, most: float) -> No
         for node in range(width + EXTRA):
             if base[node] == _INFINITE:
                 continue
-            row = lattice.moves[node] if node < size else work.squares[depth + 1, node - width]
-            low, high = (lattice.spans[node, 0], lattice.spans[node, 1]) if node < size else (_FIRST, width)
+            row = moves[node] if node < size else work.squares[depth + 1, node - width]
+            low, high = (spans[node, 0], spans[node, 1]) if node < size else (_FIRST, width)
             if mask >= 0:
                 for source in range(low, high):
                     column[source] = closed[source, node]

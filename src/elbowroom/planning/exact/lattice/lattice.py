@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.jit import exact_kernel, inner_exact_kernel
+from elbowroom.planning.exact.lattice.postures import Postures
 
 Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
@@ -29,17 +30,13 @@ _INFINITE = np.float32(np.inf)
 class Lattice(NamedTuple):
     """One group's problem along one root path. Nodes 0..W-1 are the postures, W..W+EXTRA-1 the extra ones."""
 
-    postures: Floats  # (V, d) radians
-    columns: Floats32  # (d, W) the same by components, the last repeated
-    moves: Floats32  # (V, W) squared length of each edge, infinite where there is none
-    spans: Longs  # (V, 2) the lanes of `moves` beyond which all of a posture's edges are infinite
+    postures: Postures
     extras: Floats  # (n+1, EXTRA, d) postures of the extra nodes; in row 0 HOLD is the start
     goals: Floats  # (n+1, d)
     cost: Floats32  # (n+1, W+EXTRA) of each node, squared radians; infinite: not free; row 0 is not used
     masks: Longs  # (n,) which of `closed` holds for an interval; -1: all its edges are open
     closed: Bools  # (M, W+EXTRA, W+EXTRA) which edges are closed
     previous: Longs  # (n+1,) the nodes that the last plan had
-    step: float  # radians, the longest edge
     weight: float  # w
 
 
@@ -78,8 +75,9 @@ def new_work(depths: int, nodes: int) -> Work:
 @inner_exact_kernel
 def component_of(lattice: Lattice, depth: int, node: int, i: int) -> float:
     """One component of the configuration of a node."""
-    width = lattice.moves.shape[1]
-    return float(lattice.postures[node, i] if node < width else lattice.extras[depth, node - width, i])
+    postures = lattice.postures
+    width = postures.moves.shape[1]
+    return float(postures.configurations[node, i] if node < width else lattice.extras[depth, node - width, i])
 
 
 @inner_exact_kernel
@@ -95,14 +93,15 @@ def squares_from(columns: Floats32, posture: Floats, out: Floats32) -> None:
 @inner_exact_kernel
 def measure_extras(lattice: Lattice, work: Work) -> None:
     """The squared distances of the extra nodes from the postures; infinite where an edge would be too long."""
-    size, width = lattice.postures.shape[0], lattice.moves.shape[1]
-    longest = np.float32(lattice.step * lattice.step * _ROUNDING)
+    postures, columns = lattice.postures, lattice.postures.columns
+    size, width = postures.configurations.shape[0], postures.moves.shape[1]
+    longest = np.float32(postures.step * postures.step * _ROUNDING)
     for depth in range(lattice.extras.shape[0]):
         for e in range(EXTRA):
             if lattice.cost[depth, width + e] == _INFINITE and (depth > 0 or e != HOLD):
                 continue
             row = work.squares[depth, e]
-            squares_from(lattice.columns, lattice.extras[depth, e], row)
+            squares_from(columns, lattice.extras[depth, e], row)
             for v in range(np.uint64(width)):
                 row[v] = row[v] if row[v] <= longest else _INFINITE
             row[size:] = _INFINITE
@@ -114,19 +113,21 @@ def extra_edge_square(lattice: Lattice, depth: int, e: int, f: int) -> float:
     total = 0.0
     for i in range(lattice.extras.shape[2]):
         total += (lattice.extras[depth + 1, f, i] - lattice.extras[depth, e, i]) ** 2
-    return total if total <= lattice.step * lattice.step * _ROUNDING else np.inf
+    step = lattice.postures.step
+    return total if total <= step * step * _ROUNDING else np.inf
 
 
 @inner_exact_kernel
 def slopes_of(lattice: Lattice, depth: int, row: int, out: Floats32) -> float:
     """2 w q.g into `out` (W+EXTRA,) for the nodes q of `row`; returns w |g|^2, g the goal's change after `depth`."""
-    width, weight = lattice.moves.shape[1], lattice.weight
+    columns, weight = lattice.postures.columns, lattice.weight
+    width = columns.shape[1]
     square, known = 0.0, out[:width]
     out[:] = 0.0
     for i in range(lattice.goals.shape[1]):
         change = lattice.goals[depth + 1, i] - lattice.goals[depth, i]
         square += weight * change * change
-        factor, column = np.float32(2.0 * weight * change), lattice.columns[i]
+        factor, column = np.float32(2.0 * weight * change), columns[i]
         for v in range(np.uint64(width)):
             known[v] += factor * column[v]
         for e in range(EXTRA):
@@ -137,8 +138,8 @@ def slopes_of(lattice: Lattice, depth: int, row: int, out: Floats32) -> float:
 @inner_exact_kernel
 def edge_cost(lattice: Lattice, depth: int, source: int, target: int) -> float:
     """What the edge from a node at `depth` to one of the next costs; infinite if there is none."""
-    size = lattice.postures.shape[0]
-    mask = lattice.masks[depth]
+    postures, mask = lattice.postures, lattice.masks[depth]
+    size, longest = postures.configurations.shape[0], postures.step * postures.step * _ROUNDING
     if mask >= 0 and lattice.closed[mask, source, target]:
         return np.inf
     moved, changed = 0.0, 0.0
@@ -146,8 +147,8 @@ def edge_cost(lattice: Lattice, depth: int, source: int, target: int) -> float:
         step = component_of(lattice, depth + 1, target, i) - component_of(lattice, depth, source, i)
         moved += step * step
         changed += (step - lattice.goals[depth + 1, i] + lattice.goals[depth, i]) ** 2
-    listed = source >= size or target >= size or lattice.moves[source, target] < _INFINITE
-    return lattice.weight * changed if listed and moved <= lattice.step * lattice.step * _ROUNDING else np.inf
+    listed = source >= size or target >= size or postures.moves[source, target] < _INFINITE
+    return lattice.weight * changed if listed and moved <= longest else np.inf
 
 
 @inner_exact_kernel

@@ -15,7 +15,7 @@ _INFINITE = np.float32(np.inf)
 @inner_exact_kernel
 def cost_through_extras(lattice: Lattice) -> float:
     """The cost of the cheapest path through extra nodes alone: the cheapest of all costs no more."""
-    width, last = lattice.moves.shape[1], lattice.goals.shape[0] - 1
+    width, last = lattice.postures.moves.shape[1], lattice.goals.shape[0] - 1
     few = np.empty((2, EXTRA))
     for e in range(EXTRA):
         few[0, e] = 0.0 if e == HOLD else np.inf
@@ -38,7 +38,7 @@ def cost_through_extras(lattice: Lattice) -> float:
 @inner_exact_kernel
 def cost_of_previous(lattice: Lattice) -> float:
     """The cost of the last plan's path, infinite where it is not free."""
-    total, before = 0.0, lattice.moves.shape[1] + HOLD
+    total, before = 0.0, lattice.postures.moves.shape[1] + HOLD
     for depth in range(lattice.goals.shape[0] - 1):
         node = lattice.previous[depth + 1]
         total += lattice.cost[depth + 1, node] + edge_cost(lattice, depth, before, node)
@@ -55,7 +55,7 @@ def traced(lattice: Lattice, work: Work, reached: int) -> Longs:
     nodes[reached] = place_of_least(work.costs[reached])
     for depth in range(reached, 0, -1):
         nodes[depth - 1] = work.parents[depth, nodes[depth]]
-    nodes[0] = lattice.moves.shape[1] + HOLD
+    nodes[0] = lattice.postures.moves.shape[1] + HOLD
     return nodes
 
 

@@ -9,6 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from elbowroom.by_reference import by_reference
 from elbowroom.jit import exact_kernel
 from elbowroom.planning.model.limb import Limb, pose
 from elbowroom.planning.model.self_contact import clear_of_trunk
@@ -26,6 +27,7 @@ ON_EDGE = _TIMES**2 * (3.0 - 2.0 * _TIMES)  # the share of the edge done then: i
 _SPARE = 0.15  # metres: a posture between the known ones may reach so much farther
 
 
+@by_reference
 class Postures(NamedTuple):
     """Postures of a limb and the edges between them, staying among them; none is longer than `step`."""
 

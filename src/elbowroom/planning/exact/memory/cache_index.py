@@ -10,6 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from elbowroom.by_reference import by_reference
 from elbowroom.jit import exact_kernel, inner_exact_kernel
 
 Floats = NDArray[np.float64]
@@ -18,6 +19,7 @@ Longs = NDArray[np.int64]
 _NEXT, _ROUND, _HAND = range(3)
 
 
+@by_reference
 class CacheIndex(NamedTuple):
     """Numbered places for results: their keys, and which were asked for of late."""
 

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.root import RISES, ROOT_STATE
+from elbowroom.by_reference import by_reference
 from elbowroom.jit import inner_exact_kernel
 from elbowroom.planning.exact.memory.row_contents import set_bits
 from elbowroom.planning.exact.memory.row_index import RowIndex, admit, new_row_index, place_of
@@ -19,6 +20,7 @@ Floats = NDArray[np.float64]
 _ROOM = 4096  # root states
 
 
+@by_reference
 class KnownRises(NamedTuple):
     """Root states that were looked at."""
 

@@ -5,6 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from elbowroom.by_reference import by_reference
 from elbowroom.jit import exact_kernel, helper, inner_exact_kernel
 
 Longs = NDArray[np.int64]
@@ -14,6 +15,7 @@ _SEED, _FACTOR = np.uint64(0xCBF29CE484222325), np.uint64(0x100000001B3)  # of t
 _HIGH = np.uint64(40)  # its best mixed bits are those from this one on
 
 
+@by_reference
 class RowIndex(NamedTuple):
     """Which rows are known, and where."""
 

@@ -8,8 +8,10 @@ from elbowroom.planning.exact.group.caches import PlanCaches
 from elbowroom.planning.exact.group.problem import GroupPath, GroupTask, Weights
 from elbowroom.planning.exact.group.search import search_group
 from elbowroom.planning.exact.joint.step import JointStep
+from elbowroom.planning.exact.sweep.scratch import new_scratch
 from elbowroom.planning.motion import GoOn
 from elbowroom.planning.result import GroupEvidence, JointEvidence, PlanStatus
+from elbowroom.world.obstacles.rows import span_of
 
 
 class EvidenceLog:
@@ -32,7 +34,8 @@ class EvidenceLog:
         self.go_on()
         began = perf_counter_ns()
         cache = self._caches.trunk.cache if trunk else self._caches.groups[group]
-        way: GroupPath = search_group(cache, task, self._weights)
+        scratch = new_scratch(cache.group.postures, cache.chain.waist, span_of(task.obstacles, 0))
+        way: GroupPath = search_group(scratch, cache, task, self._weights)
         spent = perf_counter_ns() - began
         status = PlanStatus.FOUND if way.reached == len(task.goals) - 1 else PlanStatus.EXHAUSTED
         self._rows.append(GroupEvidence(group, status, way.checks, way.nodes, 0, spent))

@@ -30,6 +30,7 @@ from elbowroom.planning.exact.plan.evidence import EvidenceLog
 from elbowroom.planning.exact.refine.blocked import Blocked
 from elbowroom.planning.exact.sweep.crouch import ROUNDS, Crouch, node_lowerings
 from elbowroom.planning.exact.sweep.node_clearances import HELD_AT_START, held_clearance
+from elbowroom.planning.exact.sweep.scratch import new_scratch
 from elbowroom.planning.model.lowered_legs import LoweredLegs
 from elbowroom.planning.motion import GoOn, keep_going
 from elbowroom.planning.result import Blockade, LocalPlan, PlanStatus
@@ -348,7 +349,8 @@ class UpperBodySearch:
             carriers = caches.group(DofGroup.WAIST).sweeps
             places, turns = carriers.places[waist.entries[0]], carriers.turns[waist.entries[0]]
         postures, obstacles = caches.group(group).postures, span_of(self.problem.near.spans, 0)
-        clearance, _ = held_clearance(postures, task.start, places, turns, obstacles, HELD_AT_START)
+        scratch = new_scratch(postures, postures.limb, obstacles)
+        clearance, _ = held_clearance(scratch, postures, task.start, places, turns, obstacles, HELD_AT_START)
         return max(0.5 * clearance, 0.0)
 
     def _search(self, extra: Floats32, follow: Guide | None, *, trunk: bool) -> GroupPath:

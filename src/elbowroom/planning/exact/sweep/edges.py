@@ -5,7 +5,7 @@ from numpy.typing import NDArray
 
 from elbowroom.jit import exact_kernel, helper, inner_exact_kernel, plain
 from elbowroom.planning.exact.lattice.lattice import EXTRA, Lattice, Work, least_in, slopes_of, squares_from
-from elbowroom.planning.exact.lattice.postures import BETWEEN, BLOCK, ON_EDGE, Postures
+from elbowroom.planning.exact.lattice.postures import BETWEEN, BLOCK, ON_EDGE
 from elbowroom.planning.exact.sweep.motion_bounds import SWEEP
 from elbowroom.planning.exact.sweep.scratch import Scratch
 from elbowroom.planning.model.limb import pose_into
@@ -27,9 +27,9 @@ _ONE = plain(1)  # posture
 @exact_kernel
 def _distances(lattice: Lattice, depth: int, node: int, out: Floats32) -> None:
     """The squared distances (W+OWN,) of the nodes of a depth from one of them."""
-    width = lattice.moves.shape[1]
-    posture = lattice.postures[node] if node < width else lattice.extras[depth, node - width]
-    squares_from(lattice.columns, posture, out[:width])
+    postures, width = lattice.postures, lattice.postures.moves.shape[1]
+    posture = postures.configurations[node] if node < width else lattice.extras[depth, node - width]
+    squares_from(postures.columns, posture, out[:width])
     for e in range(EXTRA):
         out[width + e] = squared_distance(lattice.extras[depth, e], posture)
 
@@ -59,15 +59,10 @@ def promising_edges(lattice: Lattice, work: Work, depth: int, most: float, seen:
 
     They are written to `found` (MOST_STEPS, 2), and marked as seen in `seen` (W+OWN, W+OWN). Returns their number.
     """
-    known, extras, moves, cost, step = lattice.postures, lattice.extras, lattice.moves, lattice.cost, lattice.step
-    size, nodes, weight, onward, squares = (
-        known.shape[0],
-        cost.shape[1],
-        np.float32(lattice.weight),
-        work.onward,
-        work.squares,
-    )
-    width, limit = nodes - EXTRA, np.float32(most)
+    postures, extras, cost = lattice.postures, lattice.extras, lattice.cost
+    known, moves, step = postures.configurations, postures.moves, postures.step
+    weight, limit, onward, squares = np.float32(lattice.weight), np.float32(most), work.onward, work.squares
+    (size, width), nodes = moves.shape, cost.shape[1]
     count, costs, base, end = 0, work.costs[depth], work.base, work.slopes
     square = np.float32(slopes_of(lattice, depth, depth, base))
     slopes_of(lattice, depth, depth + 1, end)
@@ -106,17 +101,15 @@ def promising_edges(lattice: Lattice, work: Work, depth: int, most: float, seen:
 
 
 @helper
-def _posed_between(
-    scratch: Scratch, postures: Postures, lattice: Lattice, depth: int, steps: Longs, first: int, part: int
-) -> None:
+def _posed_between(scratch: Scratch, lattice: Lattice, depth: int, steps: Longs, first: int, part: int) -> None:
     """Sixteen steps' postures on their way, from the step `first` on, at one of the looks between, into the room.
 
     The lanes beyond the steps (K, 2) repeat the last.
     """
-    known, extras, share, lanes = lattice.postures, lattice.extras, ON_EDGE[part], scratch.checks.lanes
-    limb, pairs, between = postures.limb, postures.pairs, postures.between
+    postures, extras, share, lanes = lattice.postures, lattice.extras, ON_EDGE[part], scratch.checks.lanes
+    known, limb, pairs, between = postures.configurations, postures.limb, postures.pairs, postures.between
     configurations, room, filled = scratch.configurations, scratch.limb, min(steps.shape[0] - first, BLOCK)
-    size, width, radii = known.shape[0], lattice.moves.shape[1], postures.limb.radii
+    (size, width), radii = postures.moves.shape, limb.radii
     for n in range(filled):
         a, b = steps[first + n, 0], steps[first + n, 1]
         pair = pairs[a, b] if a < size and b < size else -1
@@ -142,7 +135,6 @@ def _posed_between(
 @helper
 def close_edges(
     scratch: Scratch,
-    postures: Postures,
     lattice: Lattice,
     depth: int,
     steps: Longs,
@@ -155,7 +147,8 @@ def close_edges(
     The `carrier` are the frames that carry the limb during the interval: places (SWEEP+1, 3), turns (SWEEP+1, 4).
     """
     out, closed, checks, many = scratch.found, lattice.closed[lattice.masks[depth]], 0, steps.shape[0]
-    within, near, framed, reach, (places, turns) = scratch.checks, scratch.near, scratch.framed, postures.reach, carrier
+    reach, (places, turns) = lattice.postures.reach, carrier
+    within, near, framed = scratch.checks, scratch.near, scratch.framed
     for part in range(BETWEEN):
         sample = (part + 1) * SWEEP // (BETWEEN + 1)
         place, turn = places[sample], turns[sample]
@@ -165,7 +158,7 @@ def close_edges(
         for b in range(count):
             move_into(near, b, place, turn, framed, b)
         for first in range(0, many, BLOCK):
-            _posed_between(scratch, postures, lattice, depth, steps, first, part)
+            _posed_between(scratch, lattice, depth, steps, first, part)
             out[:] = _INFINITE
             checks += capsule_clearances_in(within, framed, count, out)
             for k in range(first, min(first + BLOCK, many)):

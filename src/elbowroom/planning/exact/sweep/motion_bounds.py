@@ -15,6 +15,7 @@ from elbowroom.body.gait.cycle import quickness, walk_into
 from elbowroom.body.pose.kinematics import BodyModel
 from elbowroom.body.pose.posing import place_pelvis_into
 from elbowroom.body.root import HEIGHT, RISES, ROOT_STATE
+from elbowroom.by_reference import by_reference
 from elbowroom.jit import exact_kernel, helper, inner_exact_kernel
 from elbowroom.planning.exact.memory.cache_index import CacheIndex, admit, begin_round, find, new_cache_index
 from elbowroom.planning.model.levers import MOVES, ROTATION, lifts_of
@@ -30,6 +31,7 @@ _KNOWN = RISES  # numbers of a root state that its way depends on
 _BOB = 0.05  # metres: the amplitude of the hips' bob on a standard leg is smaller
 
 
+@by_reference
 class KinematicChain(NamedTuple):
     """What carries the limbs: legs, hips and spine."""
 
@@ -43,6 +45,7 @@ class KinematicChain(NamedTuple):
     lift: float  # metres: what a unit of lowering moves everything
 
 
+@by_reference
 class RootSweeps(NamedTuple):
     """Pelvis frames in the world at the looks of key intervals; the key is the interval and both root states."""
 
@@ -52,6 +55,7 @@ class RootSweeps(NamedTuple):
     sway: Floats  # (S, SWEEP) metres
 
 
+@by_reference
 class LimbSweeps(NamedTuple):
     """What limbs did in key intervals; the key is the carrier's way, then posture and velocity at both ends."""
 

@@ -10,11 +10,12 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from elbowroom.by_reference import by_reference
 from elbowroom.jit import exact_kernel, helper, inner_exact_kernel, plain
 from elbowroom.planning.exact.lattice.postures import BLOCK, Postures
 from elbowroom.planning.exact.memory.cache_index import CacheIndex, admit, find, new_cache_index
 from elbowroom.planning.exact.sweep.motion_bounds import SWEEP
-from elbowroom.planning.exact.sweep.scratch import Scratch, held_against, new_scratch
+from elbowroom.planning.exact.sweep.scratch import Scratch, held_against
 from elbowroom.planning.model.limb import pose_into
 from elbowroom.world.obstacles.blocks import least_of, lower_blocks_in
 from elbowroom.world.obstacles.layout import Nearby
@@ -31,6 +32,7 @@ _FAR = np.float32(1e3)
 _ONE, _BOTH, _FIRST = plain(1), plain(2), plain(0)  # postures; place
 
 
+@by_reference
 class NodeClearances(NamedTuple):
     """Tables by interval; the key is the carrier's way and the goals at both ends."""
 
@@ -164,8 +166,8 @@ def _lower(row: Floats32, blocks: Floats32) -> None:
             lanes[i] = min(lanes[i], block[i])
 
 
-@inner_exact_kernel
-def held_clearance_in(
+@exact_kernel
+def held_clearance(
     scratch: Scratch,
     postures: Postures,
     configuration: Floats,
@@ -174,7 +176,7 @@ def held_clearance_in(
     obstacles: Nearby,
     part: int,
 ) -> tuple[float, int]:
-    """`held_clearance` with room to work in."""
+    """The clearance of a single posture (d,) in one of the parts of an interval, and the capsules that were checked."""
     late = (_LATE, _MOMENTS + 1)
     begin, end = (0, 1) if part == HELD_AT_START else (1, _EARLY + 1) if part == HELD_EARLY else late
     near, segments = around(obstacles, places[0], postures.reach + 0.5, scratch.near), scratch.segments
@@ -196,13 +198,3 @@ def held_clearance_in(
         found[c, :] = _FAR
     checks = held_against(scratch, postures.limb.radii, near, total, places[0], own_places, own_turns, found)
     return least_of(found, scratch.checks.apart), checks
-
-
-@exact_kernel
-def held_clearance(
-    postures: Postures, configuration: Floats, places: Floats, turns: Floats, obstacles: Nearby, part: int
-) -> tuple[float, int]:
-    """The clearance of a single posture (d,) in one of the parts of an interval, and the capsules that were checked."""
-    scratch = new_scratch(postures, postures.limb, obstacles)
-    clearance, checks = held_clearance_in(scratch, postures, configuration, places, turns, obstacles, part)
-    return clearance, checks

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from elbowroom.body.dof import DOF, DofGroup
 from elbowroom.body.pose.whole_body import WholeBody, posed_body
 from elbowroom.body.root import ROOT_STATE
+from elbowroom.by_reference import by_reference
 from elbowroom.jit import exact_kernel, helper
 from elbowroom.planning.exact.lattice.extra_nodes import extra_nodes
 from elbowroom.planning.exact.lattice.postures import BLOCK, Postures
@@ -25,6 +26,7 @@ SPARE = 0.01  # metres that a posture keeps beyond what is allowed, so that the 
 _LOCAL = DofGroup.ROOT.size
 
 
+@by_reference
 class OwnBodyNodes(NamedTuple):
     """A group's postures and the rest of the body, and H surroundings in which they were checked."""
 

@@ -15,6 +15,7 @@ from elbowroom.body.dof import DOF, LOCAL, LOCAL_GROUPS, SEARCH_ORDER, DofGroup,
 from elbowroom.body.pose.kinematics import BodyModel
 from elbowroom.body.pose.whole_body import WholeBody, posed_body
 from elbowroom.body.root import HEIGHT, RISES, ROOT_STATE
+from elbowroom.by_reference import by_reference
 from elbowroom.jit import exact_kernel, helper, inner_exact_kernel, plain
 from elbowroom.planning.exact.memory.known_rises import KnownRises, new_known_rises, recall_rises
 from elbowroom.planning.exact.memory.row_contents import CONTENT, is_natural, set_bits, set_contents
@@ -42,6 +43,7 @@ _PLACE = plain(5)  # numbers of a root state that tell where it is, and how high
 _WIDTH = plain(CONTENT + 2 * LOCAL + 5)  # numbers that a key time is known by
 
 
+@by_reference
 class OwnParts(NamedTuple):
     """A body and its pairs of parts that must not touch."""
 

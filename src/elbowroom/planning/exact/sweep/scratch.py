@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.root import ROOT_STATE
+from elbowroom.by_reference import by_reference
 from elbowroom.jit import exact_kernel, inner_exact_kernel, plain
 from elbowroom.planning.exact.lattice.postures import BLOCK, Postures
 from elbowroom.planning.model.limb import Limb, LimbScratch, limb_scratch
@@ -25,6 +26,7 @@ Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
 
 
+@by_reference
 class Scratch(NamedTuple):
     """Room for sixteen looks at a limb with C capsules and d components, past B obstacles."""
 

@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from elbowroom.by_reference import by_reference
 from elbowroom.jit import exact_kernel, helper, inner_exact_kernel
 from elbowroom.planning.root.legs.hull import StrideHull, to_check
 from elbowroom.planning.root.legs.neighbours import Neighbours
@@ -26,6 +27,7 @@ UNKNOWN: Any = np.float32(np.nan)  # room that was not looked at
 _ENDLESS: Any = np.float32(np.inf)
 
 
+@by_reference
 class Looks(NamedTuple):
     """How the paths of one body are looked at."""
 

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from elbowroom.body.pose.kinematics import BodyModel, leg_capsules
 from elbowroom.body.root import HEIGHT, ROOT_STATE
+from elbowroom.by_reference import by_reference
 from elbowroom.jit import exact_kernel, helper, inner_exact_kernel
 from elbowroom.world.ground.ground import PLAIN, level_about
 from elbowroom.world.ground.ground import Ground as Underfoot
@@ -31,6 +32,7 @@ _EVEN = 5e-4  # metres by which level ground may rise
 _PIECE = 0.5  # metres of a route
 
 
+@by_reference
 class StrideHull(NamedTuple):
     """How far legs and pelvis reach from the root in a stride no faster than the table's velocities, metres."""
 

@@ -11,6 +11,7 @@ from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.made_once import made_once
 from elbowroom.body.pose.kinematics import BodyModel, body_model, leg_capsules
 from elbowroom.body.root import ROOT_STATE
+from elbowroom.by_reference import by_reference
 from elbowroom.planning.model.footing import Footing
 from elbowroom.planning.root.legs.hull import StrideHull, ground_below, some_ground, stride_hull
 from elbowroom.planning.root.legs.neighbours import Neighbours
@@ -36,6 +37,7 @@ _BESIDE = 0.1  # metres beside a stance within which treads are stood on too: mo
 _LOW = 0.1  # metres: lower end of the stance capsule's axis
 
 
+@by_reference
 class Measures(NamedTuple):
     """What is known of somebody's legs anywhere."""
 

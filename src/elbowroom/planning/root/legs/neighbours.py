@@ -6,6 +6,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from elbowroom.by_reference import by_reference
 from elbowroom.planning.root.legs.hull import Ground, joined_ground, some_ground
 from elbowroom.world.obstacles.layout import Nearby
 from elbowroom.world.obstacles.rows import is_empty, joined, some_of
@@ -13,6 +14,7 @@ from elbowroom.world.obstacles.rows import is_empty, joined, some_of
 Floats = NDArray[np.float64]
 
 
+@by_reference
 class Neighbours(NamedTuple):
     """Obstacles and the ground that they stand on."""
 

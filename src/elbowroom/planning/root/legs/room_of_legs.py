@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from elbowroom.body.pose.whole_body import WholeBody, posed_legs
 from elbowroom.body.root import HEIGHT
+from elbowroom.by_reference import by_reference
 from elbowroom.jit import exact_kernel, helper
 from elbowroom.planning.model.footing import floors_under, levelled, lift_feet, set_rises
 from elbowroom.planning.root.legs.hull import Ground
@@ -23,6 +24,7 @@ Bools = NDArray[np.bool_]
 _HERE = 0.0, 0.0, 0.0  # obstacles are seen from where they are
 
 
+@by_reference
 class Legs(NamedTuple):
     """Legs and pelvis of a body."""
 

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.root import HEIGHT
+from elbowroom.by_reference import by_reference
 from elbowroom.jit import exact_kernel
 from elbowroom.planning.root.cost import Prices, lost_on_line
 from elbowroom.planning.root.legs.hull import Ground, StrideHull, ground_near, route_is_open, to_check
@@ -20,6 +21,7 @@ from elbowroom.world.obstacles.broad_phase import Grids
 Floats = NDArray[np.float64]
 
 
+@by_reference
 class Walker(NamedTuple):
     """Who walks, and where: what does not change from plan to plan."""
 

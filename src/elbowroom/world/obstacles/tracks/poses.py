@@ -5,6 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from elbowroom.by_reference import by_reference
 from elbowroom.jit import brief_exact_kernel, inner_exact_kernel
 from elbowroom.world.obstacles.layout import CENTER, TURN
 
@@ -14,6 +15,7 @@ Longs = NDArray[np.int64]
 ONCE, LOOP, PINGPONG = range(3)  # what follows the last key pose
 
 
+@by_reference
 class Tracks(NamedTuple):
     """B tracks, one after the other."""
 
