@@ -8,7 +8,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from elbowroom.jit import kernel
 from elbowroom.world.obstacles.clearance import lower_clearance
-from elbowroom.world.obstacles.from_above import ball_radius, place_of
+from elbowroom.world.obstacles.extents import reach_along
+from elbowroom.world.obstacles.from_above import place_of
 from elbowroom.world.obstacles.layout import Nearby
 from elbowroom.world.obstacles.rows import how_many, row_of
 from elbowroom.world.scene import Scene
@@ -95,9 +96,11 @@ def _fill_window(near: Nearby, stance: Floats32, place: Floats, heights: Floats3
         x, z = place_of(near, b)
         dx, dz = x - place[0], z - place[1]
         center_a, center_l = (dx * sine + dz * cosine) / cell, (dx * cosine - dz * sine) / cell
-        reach = (ball_radius(near, b) + stance[0] + farthest) / cell + 1.0
-        first_a, last_a = max(0, int(center_a - reach)), min(ahead, int(center_a + reach) + 1)
-        first_l, last_l = max(0, int(center_l - reach)), min(left, int(center_l + reach) + 1)
+        away = stance[0] + farthest
+        reach_a = (reach_along(near, b, sine, cosine) + away) / cell + 1.0
+        reach_l = (reach_along(near, b, cosine, -sine) + away) / cell + 1.0
+        first_a, last_a = max(0, int(center_a - reach_a)), min(ahead, int(center_a + reach_a) + 1)
+        first_l, last_l = max(0, int(center_l - reach_l)), min(left, int(center_l + reach_l) + 1)
         rows, columns = last_a - first_a, last_l - first_l
         if rows <= 0 or columns <= 0:
             continue

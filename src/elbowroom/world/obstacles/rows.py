@@ -143,6 +143,12 @@ def unfilled(near: Nearby) -> Nearby:
     return Nearby(np.empty(near.rows.shape), near.packed)
 
 
+@helper
+def room_for(near: Nearby, count: int) -> Nearby:
+    """Room for so many of the obstacles, to be written to by other kernels."""
+    return Nearby(np.empty((count, ROW)), near.packed)
+
+
 @exact_kernel
 def shift(near: Nearby, count: int, origin: Floats) -> None:
     """Have the first `count` obstacles as seen from `origin` (3,)."""

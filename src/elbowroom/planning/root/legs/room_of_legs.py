@@ -14,13 +14,14 @@ from elbowroom.planning.root.legs.hull import Ground
 from elbowroom.planning.root.legs.neighbours import Neighbours
 from elbowroom.world.ground.ground import Sole
 from elbowroom.world.obstacles.clearance import lower_clearance
-from elbowroom.world.obstacles.rows import first_of, shifted_into, unfilled
+from elbowroom.world.obstacles.rows import room_for, shifted_into
 
 Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
 Longs = NDArray[np.int64]
 Bools = NDArray[np.bool_]
 
+_WIDE = 1e-3  # metres: more than any rounding
 _HERE = 0.0, 0.0, 0.0  # obstacles are seen from where they are
 
 
@@ -56,12 +57,13 @@ def room_at(legs: Legs, among: Neighbours, states: Floats, spare: float, farthes
     segments = posed_legs(legs.posed, rows, lowerings)
     if uneven:
         lift_feet(segments, legs.feet, posed_legs(legs.posed, levelled(rows), lowerings), legs.feet, legs.radii, spare)
-    near, count = unfilled(among.obstacles), 0
+        _leave_out_far(among.ground, segments, legs.radii, farthest, chosen)
+    near, count = room_for(among.obstacles, chosen.sum()), 0
     for b in range(chosen.shape[0]):
         if chosen[b]:
             shifted_into(among.obstacles, b, _HERE, near, count)
             count += 1
-    lower_clearance(segments, legs.radii, first_of(near, count), out)
+    lower_clearance(segments, legs.radii, near, out)
     for n in range(out.shape[0]):
         if not there[n]:
             out[n] = -1.0
@@ -85,3 +87,20 @@ def _leave_out(ground: Ground, floor: float, top: float, chosen: Bools) -> None:
     """Of the boxes that are chosen leave out those that do not rise above a height, or begin above another."""
     for b in range(chosen.shape[0]):
         chosen[b] = chosen[b] and ground.heights[b, 1] > floor and ground.heights[b, 0] < top
+
+
+@helper
+def _leave_out_far(ground: Ground, segments: Floats32, radii: Floats32, farthest: float, chosen: Bools) -> None:
+    """Of the boxes that are chosen leave out those farther than so many metres from a box round all legs (C, 6, N)."""
+    least, most = np.full(3, np.inf), np.full(3, -np.inf)
+    for c in range(segments.shape[0]):
+        away = radii[c] + farthest + _WIDE
+        for i in range(6):
+            for n in range(segments.shape[2]):
+                least[i % 3] = min(least[i % 3], segments[c, i, n] - away)
+                most[i % 3] = max(most[i % 3], segments[c, i, n] + away)
+    for b in range(chosen.shape[0]):
+        if chosen[b]:
+            across = ground.least[b, 0] <= most[0] and ground.most[b, 0] >= least[0]
+            along = ground.least[b, 1] <= most[2] and ground.most[b, 1] >= least[2]
+            chosen[b] = across and along and ground.heights[b, 0] <= most[1] and ground.heights[b, 1] >= least[1]

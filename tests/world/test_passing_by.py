@@ -1,0 +1,68 @@
+"""What a tile passes by is farther than what is known already, and most of what is far is passed by."""
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from elbowroom.geometry import quaternion
+from elbowroom.jit import kernel
+from elbowroom.world.obstacles.clearance import clearance, pairwise_clearance
+from elbowroom.world.obstacles.layout import LANES, PER_METRE, TILE, Nearby
+from elbowroom.world.obstacles.obstacles import Obstacles
+from elbowroom.world.obstacles.passing_by import SIDES, apart_from, boxes_round
+
+Floats = NDArray[np.float64]
+Floats32 = NDArray[np.float32]
+
+AROUND = 60
+
+
+@kernel
+def apart(near: Nearby, tiles: Floats32, squares: Floats32) -> Floats32:
+    """How far obstacles lie outside of what the first tile reaches, for who is no kernel."""
+    boxes, out = np.empty((SIDES, near.rows.shape[0]), np.float32), np.empty(near.rows.shape[0], np.float32)
+    boxes_round(near, boxes)
+    apart_from(tiles, 0, squares, boxes, out)
+    return out
+
+
+def obstacles(rng: np.random.Generator) -> Nearby:
+    turns = quaternion.normalize(rng.normal(size=(AROUND, 4)))
+    return Obstacles.boxes(rng.uniform(-2.0, 2.0, (AROUND, 3)), turns, rng.uniform(0.02, 0.3, (AROUND, 3))).standing
+
+
+def limbs(rng: np.random.Generator) -> Floats32:
+    """Sixteen axes (1, 6, LANES) of one capsule in postures that are near each other."""
+    begin, step = rng.uniform(-1.0, 1.0, (3, 1)), rng.uniform(-0.3, 0.3, (3, 1))
+    begins = begin + rng.uniform(-0.05, 0.05, (3, LANES))
+    return np.concatenate([begins, begins + step])[None].astype(np.float32)
+
+
+@pytest.mark.parametrize("known", [0.02, 0.3])
+def test_what_is_passed_by_is_farther_than_what_is_known(known: float) -> None:
+    rng, passed, far = np.random.default_rng(3), 0, 0
+    for _ in range(20):
+        near, axes = obstacles(rng), limbs(rng)
+        squares, tiles = np.full(LANES, (known * PER_METRE) ** 2, np.float32), np.zeros(TILE, np.float32)
+        tiles[: 6 * LANES] = axes[0].ravel()
+        nearest = pairwise_clearance(axes, np.zeros(1), near)[0].min(axis=1)
+        passes = apart(near, tiles, squares) > 0.0
+        assert np.all(nearest[passes] > known)
+        passed, far = passed + int(passes.sum()), far + int((nearest > known).sum())
+    assert passed > 0.8 * far
+
+
+def test_who_asks_for_little_is_told_the_same_among_many() -> None:
+    rng = np.random.default_rng(4)
+    for farthest in (0.0, 0.05, 0.4):
+        near, axes = obstacles(rng), limbs(rng)
+        told = clearance(axes, np.full(1, 0.06), near, farthest)
+        all_told = pairwise_clearance(axes, np.full(1, 0.06), near).min(axis=(0, 1))
+        np.testing.assert_array_equal(told, np.minimum(all_told, np.float32(farthest)))
+
+
+def test_nothing_is_passed_by_while_nothing_is_known() -> None:
+    rng = np.random.default_rng(5)
+    tiles = np.zeros(TILE, np.float32)
+    tiles[: 6 * LANES] = limbs(rng)[0].ravel()
+    assert np.all(apart(obstacles(rng), tiles, np.full(LANES, np.inf, np.float32)) <= 0.0)
