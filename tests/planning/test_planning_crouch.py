@@ -1,8 +1,10 @@
 """Under a beam among low boxes: what the exact planner finds leaves room for the bent knees too."""
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
+import pytest
 from numpy.typing import NDArray
 
 from elbowroom.body.dof import LOCAL, LOWERING, DofGroup
@@ -12,6 +14,7 @@ from elbowroom.body.root import ROOT_STATE
 from elbowroom.control.key_frame_queue import KeyFrameQueue
 from elbowroom.planning.exact.memory.previous_plan import StartState
 from elbowroom.planning.exact.plan.upper_body import UpperBodyPlanner
+from elbowroom.planning.exact.plan.upper_body_search import Effort
 from elbowroom.planning.exact.settings import ExactSettings
 from elbowroom.planning.exact.sweep.crouch import ROUNDS, Crouch, node_lowerings
 from elbowroom.planning.goal import natural_walk
@@ -97,6 +100,28 @@ def test_bent_knees_touch_nothing_and_would_if_nobody_looked() -> None:
         touching += blind is not None and blind[0] < 0.0
     assert crouched >= 3
     assert touching >= 2
+
+
+def test_what_feet_stand_on_is_looked_up_once_for_all_ways_of_the_waist(monkeypatch: pytest.MonkeyPatch) -> None:
+    shown, blocked = LoweredLegs.shown, LoweredLegs.blocked_intervals
+    looked, ways = list[RootPath](), list[RootPath]()
+
+    def seen(legs: LoweredLegs, path: RootPath) -> Floats:
+        looked.append(path)
+        return shown(legs, path)
+
+    def held(legs: LoweredLegs, path: RootPath, *told: Any) -> NDArray[np.bool_]:
+        ways.append(path)
+        return blocked(legs, path, *told)
+
+    monkeypatch.setattr(LoweredLegs, "shown", seen)
+    monkeypatch.setattr(LoweredLegs, "blocked_intervals", held)
+    for seed in range(6):
+        start = natural_walk()(walk(speed=0.0))[0]
+        UpperBodyPlanner(HUMANOID, scene(seed), ExactSettings()).plan(
+            walk(), StartState(start, np.zeros(LOCAL)), effort=Effort.QUICK
+        )
+    assert len(ways) > 2 * len(looked) > 0
 
 
 def wall_before_the_knees() -> LoweredLegs:

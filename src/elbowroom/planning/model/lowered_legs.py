@@ -27,7 +27,6 @@ from elbowroom.world.obstacles.tracks.moving import Moving
 Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
 Bools = NDArray[np.bool_]
-Indices = NDArray[np.int64]
 
 _LEAST = 1e-3  # of a lowering that is looked at: less than a millimetre
 _SPEED = 2.2  # m/s: a run, in which legs reach farthest
@@ -126,40 +125,51 @@ class LoweredLegs:
         blocked: Bools = found.min(axis=1) < margin
         return blocked
 
-    def blocked_intervals(self, path: RootPath, keys: Floats, velocities: Floats, margin: float) -> Bools:
+    def shown(self, path: RootPath) -> Floats:
+        """The root states at all moments of a path that are looked at as it is shown, with what feet stand on then.
+
+        On treads that is dear, and the same however deep one crouches.
+        """
+        return self.footing.stood(_moments(path.states, path.interval))[0]
+
+    def blocked_intervals(
+        self, path: RootPath, keys: Floats, velocities: Floats, margin: float, shown: Floats | None = None
+    ) -> Bools:
         """In which key intervals (n,) the curve of lowerings brings the legs within `margin` of anything.
 
-        It leads through `keys` (n+1,) with `velocities` (n+1,), as playback shows it.
+        It leads through `keys` (n+1,) with `velocities` (n+1,), as playback shows it; `shown` are those of the path.
         """
-        curve = np.ascontiguousarray(keys), np.ascontiguousarray(velocities)
-        roots, lowerings, after, owner = _shown(path.states, path.interval, *curve)
-        blocked = np.zeros(path.horizon, np.bool_)
-        if len(owner):
-            clear = self._crouching(self.footing.stood(roots)[0], lowerings, after, margin)
+        lowerings = _lowerings(path.interval, np.ascontiguousarray(keys), np.ascontiguousarray(velocities))
+        lowered, blocked = np.flatnonzero(lowerings > _LEAST), np.zeros(path.horizon, np.bool_)
+        if len(lowered):
+            roots = (self.shown(path) if shown is None else shown)[lowered]
+            owner, after = lowered // _SHOWN, (lowered // _SHOWN + lowered % _SHOWN / _SHOWN) * path.interval
+            clear = self._crouching(roots, lowerings[lowered], after, margin)
             blocked[owner[clear < margin]] = True
         return blocked
 
 
 @exact_kernel
-def _shown(states: Floats, interval: float, keys: Floats, velocities: Floats) -> tuple[Floats, Floats, Floats, Indices]:
-    """The shown moments of a path (n+1, 7) that are lowered by the cubic Hermite curve through keys (n+1,).
-
-    Root states (N, 7), lowerings (N,), seconds on the path (N,) and key intervals (N,).
-    """
-    count = (states.shape[0] - 1) * _SHOWN
-    roots, lowerings, after = np.empty((count, ROOT_STATE)), np.empty(count), np.empty(count)
-    owner, used = np.empty(count, np.int64), 0
+def _moments(states: Floats, interval: float) -> Floats:
+    """The root states (n _SHOWN, ROOT_STATE) at the shown moments of a path (n+1, 7)."""
+    roots = np.empty(((states.shape[0] - 1) * _SHOWN, ROOT_STATE))
     for k in range(states.shape[0] - 1):
-        a, b, m, n = keys[k], keys[k + 1], interval * velocities[k], interval * velocities[k + 1]
         rates = rates_at(states[k], states[k + 1])
         for i in range(_SHOWN):
+            interpolate_between(states[k], states[k + 1], rates, i / _SHOWN, interval, roots[k * _SHOWN + i])
+    return roots
+
+
+@exact_kernel
+def _lowerings(interval: float, keys: Floats, velocities: Floats) -> Floats:
+    """Those at the shown moments (n _SHOWN,) on the cubic Hermite curve through keys (n+1,) with velocities (n+1,)."""
+    found = np.empty((keys.shape[0] - 1) * _SHOWN)
+    for k in range(keys.shape[0] - 1):
+        a, b, m, n = keys[k], keys[k + 1], interval * velocities[k], interval * velocities[k + 1]
+        for i in range(_SHOWN):
             u = i / _SHOWN
-            lowering = a + u * (m + u * (3.0 * (b - a) - 2.0 * m - n + u * (2.0 * (a - b) + m + n)))
-            if lowering > _LEAST:
-                interpolate_between(states[k], states[k + 1], rates, u, interval, roots[used])
-                lowerings[used], after[used], owner[used] = lowering, (k + u) * interval, k
-                used += 1
-    return roots[:used], lowerings[:used], after[:used], owner[:used]
+            found[k * _SHOWN + i] = a + u * (m + u * (3.0 * (b - a) - 2.0 * m - n + u * (2.0 * (a - b) + m + n)))
+    return found
 
 
 def _extent(model: BodyModel) -> tuple[float, float]:

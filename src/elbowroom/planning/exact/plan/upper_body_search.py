@@ -9,6 +9,7 @@ way, the waist's last way is tried, under which the arms had theirs; then the jo
 from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import Enum
+from functools import cached_property
 from time import perf_counter_ns
 from typing import NamedTuple
 
@@ -92,6 +93,11 @@ class UpperBodySearch:
     def path(self) -> RootPath:
         """The root path."""
         return self.problem.path
+
+    @cached_property
+    def _shown(self) -> Floats:
+        """What feet stand on as the path is shown, for all ways of the waist."""
+        return self.legs.shown(self.path)
 
     @property
     def goals(self) -> Floats:
@@ -344,7 +350,7 @@ class UpperBodySearch:
             begin = self.problem.begins.ahead
             return self.caches.own_trunk.contacts(self.path, uppers, rates, self.problem.walk, begin) >= 0
 
-        crouch = Crouch(self.legs, self.path, lowerings, folds)
+        crouch = Crouch(self.legs, self.path, lowerings, folds, lambda: self._shown)
         for attempt in range(ROUNDS):
             way = self._search(closed, follow, trunk=trunk)
             if way.reached < self.path.horizon or not crouch.rules_out(way.keys, way.velocities, closed):

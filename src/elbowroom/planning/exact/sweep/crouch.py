@@ -38,12 +38,15 @@ class Crouch:
         path: RootPath,
         lowerings: Callable[[], Floats],
         folds: Callable[[Floats, Floats], Bools],
+        shown: Callable[[], Floats] | None = None,
     ) -> None:
         """`lowerings` gives those of all nodes of the search, (n+1, V).
 
-        `folds` tells in which key intervals (n,) a way lays the trunk on the thighs.
+        `folds` tells in which key intervals (n,) a way lays the trunk on the thighs; `shown` gives what `legs.shown`
+        has of the path, to whoever looks at it again and again.
         """
         self._legs, self._path, self._lowerings, self._folds = legs, path, lowerings, folds
+        self._shown = shown or (lambda: legs.shown(path))
         self._known: Floats | None = None
         self._round = 0
         self._margin: float | None = None
@@ -56,7 +59,7 @@ class Crouch:
         if self._margin is None:
             now = self._legs.clearances(self._path.states[:1], deep[:1], farthest=2.0 * _MARGIN)
             self._margin = min(_MARGIN, max(0.5 * float(now[0]), 0.0))
-        blocked = self._legs.blocked_intervals(self._path, deep, rates, self._margin)
+        blocked = self._legs.blocked_intervals(self._path, deep, rates, self._margin, self._shown())
         folded = self._folds(keys, velocities)
         if not (blocked | folded).any():
             return False
