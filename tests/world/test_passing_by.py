@@ -9,7 +9,8 @@ from elbowroom.jit import kernel
 from elbowroom.world.obstacles.clearance import clearance, pairwise_clearance
 from elbowroom.world.obstacles.layout import LANES, PER_METRE, TILE, Nearby
 from elbowroom.world.obstacles.obstacles import Obstacles
-from elbowroom.world.obstacles.passing_by import SIDES, apart_from, boxes_round
+from elbowroom.world.obstacles.passing_by import apart_from, boxes_round
+from elbowroom.world.obstacles.shapes import Box, Cylinder
 
 Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
@@ -20,15 +21,18 @@ AROUND = 60
 @kernel
 def apart(near: Nearby, tiles: Floats32, squares: Floats32) -> Floats32:
     """How far obstacles lie outside of what the first tile reaches, for who is no kernel."""
-    boxes, out = np.empty((SIDES, near.rows.shape[0]), np.float32), np.empty(near.rows.shape[0], np.float32)
-    boxes_round(near, boxes)
+    boxes = boxes_round(near)
+    out = np.empty(boxes.shape[1], np.float32)
     apart_from(tiles, 0, squares, boxes, out)
     return out
 
 
 def obstacles(rng: np.random.Generator) -> Nearby:
-    turns = quaternion.normalize(rng.normal(size=(AROUND, 4)))
-    return Obstacles.boxes(rng.uniform(-2.0, 2.0, (AROUND, 3)), turns, rng.uniform(0.02, 0.3, (AROUND, 3))).standing
+    """Boxes and cylinders, small among all that is about them."""
+    turns, sizes = quaternion.normalize(rng.normal(size=(AROUND, 4))), rng.uniform(0.04, 0.6, (AROUND, 3))
+    shapes = [Box((x, y, z)) if n % 2 else Cylinder(0.5 * x, y) for n, (x, y, z) in enumerate(sizes.tolist())]
+    names = tuple(str(n) for n in range(AROUND))
+    return Obstacles(tuple(shapes), rng.uniform(-2.0, 2.0, (AROUND, 3)), turns, names, ground=-9.0).standing
 
 
 def limbs(rng: np.random.Generator) -> Floats32:
@@ -59,6 +63,13 @@ def test_who_asks_for_little_is_told_the_same_among_many() -> None:
         told = clearance(axes, np.full(1, 0.06), near, farthest)
         all_told = pairwise_clearance(axes, np.full(1, 0.06), near).min(axis=(0, 1))
         np.testing.assert_array_equal(told, np.minimum(all_told, np.float32(farthest)))
+
+
+def test_boxes_are_looked_into_at_once() -> None:
+    rng = np.random.default_rng(6)
+    turns = quaternion.normalize(rng.normal(size=(AROUND, 4)))
+    boxes = Obstacles.boxes(rng.uniform(-2.0, 2.0, (AROUND, 3)), turns, rng.uniform(0.02, 0.3, (AROUND, 3)))
+    assert len(apart(boxes.standing, np.zeros(TILE, np.float32), np.zeros(LANES, np.float32))) == 0
 
 
 def test_nothing_is_passed_by_while_nothing_is_known() -> None:

@@ -19,7 +19,7 @@ from numpy.typing import ArrayLike, NDArray
 from elbowroom.jit import brief_kernel, helper, inner_kernel, kernel, plain
 from elbowroom.world.obstacles.layout import LANES, PER_METRE, ROW, TILE, Nearby
 from elbowroom.world.obstacles.pairs.tiles import fill_tile_rows, lower_squares, lower_to_squares, same_kind
-from elbowroom.world.obstacles.passing_by import SIDES, apart_from, boxes_round
+from elbowroom.world.obstacles.passing_by import apart_from, boxes_round
 
 _FIRST = plain(0)
 _TILES = 32  # tiles that are treated together: they stay in the first-level cache
@@ -104,18 +104,19 @@ def _lower_all(
 ) -> None:
     """Lower the squares of the tiles in use to those from all obstacles that they do not pass by.
 
-    `boxes` (SIDES, B) are those round the obstacles; `pairs` (_PAIRS, 2) is scratch.
+    `boxes` (SIDES, B) are those round the obstacles, or none of them are passed by; `pairs` (_PAIRS, 2) is scratch.
     """
-    apart, count = np.zeros((used, boxes.shape[1]), np.float32), _FIRST
-    for t in range(used if boxes.shape[1] > _FEW else 0):
+    passing, count = boxes.shape[1] > _FEW, _FIRST
+    apart = np.empty((used if passing else 0, boxes.shape[1]), np.float32)
+    for t in range(apart.shape[0]):
         apart_from(tiles, t, squares, boxes, apart[t])
-    for b in range(boxes.shape[1]):
+    for b in range(rows.shape[0] // ROW):
         if count > 0 and not same_kind(rows, b, b - 1):
             lower_squares(tiles, rows, packed, pairs, count, squares)
             count = _FIRST
         for t in range(used):
             pairs[count, 0], pairs[count, 1] = t, b
-            count += apart[t, b] <= _ZERO
+            count += not passing or apart[t, b] <= _ZERO
             if count == _PAIRS:
                 lower_squares(tiles, rows, packed, pairs, count, squares)
                 count = _FIRST
@@ -139,9 +140,8 @@ def clearance_into(segments: Floats32, radii: Floats32, near: Nearby, out: Float
 def lower_clearance(segments: Floats32, radii: Floats32, near: Nearby, out: Floats32) -> None:
     """Lower `out` (N,) to the clearances where these are less. Meshes are passed by that are farther than it says."""
     rows, pairs = np.empty(near.rows.shape[0] * ROW, np.float32), np.empty((_PAIRS, 2), np.int64)
-    boxes = np.empty((SIDES, near.rows.shape[0]), np.float32)
     fill_tile_rows(near.rows, near.rows.shape[0], rows)
-    boxes_round(near, boxes)
+    boxes = boxes_round(near)
     scratch = np.empty(_TILES * (TILE + 2 * LANES), np.float32)
     tiles, lanes = scratch[: _TILES * TILE], scratch[_TILES * TILE :]
     for start in range(0, out.shape[0], _TILES * LANES):
@@ -203,11 +203,10 @@ def lower_each(capsules: Floats32, radii: Floats32, near: Nearby, out: Floats32)
     for i in range(used * LANES):
         away = max(out[min(i, count - 1)] + radii[min(i, count - 1)], _ZERO) * _MORE
         squares[i] = away * away
-    rows, boxes = np.empty(near.rows.shape[0] * ROW, np.float32), np.empty((SIDES, near.rows.shape[0]), np.float32)
+    rows = np.empty(near.rows.shape[0] * ROW, np.float32)
     fill_tile_rows(near.rows, near.rows.shape[0], rows)
-    boxes_round(near, boxes)
     _fill_tiles(capsules, _FIRST, count, tiles)
-    _lower_all(tiles, used, rows, near.packed, boxes, np.empty((_PAIRS, 2), np.int64), squares)
+    _lower_all(tiles, used, rows, near.packed, boxes_round(near), np.empty((_PAIRS, 2), np.int64), squares)
     for i in range(count):
         out[i] = min(out[i], math.sqrt(squares[i]) * _METRES - radii[i])
 

@@ -11,25 +11,29 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.jit import inner_kernel
-from elbowroom.world.obstacles.layout import HALF, LANES, PER_METRE, ROUNDING, TILE, TURN, Nearby
+from elbowroom.world.obstacles.layout import HALF, KIND, LANES, PER_METRE, ROUNDING, TILE, TURN, Kind, Nearby
 
 Floats32 = NDArray[np.float32]
 
 SIDES = 6  # numbers of a box: its least coordinates, then its greatest
 _LANES, _TILE = np.uint64(LANES), np.uint64(TILE)
 _METRES: Any = np.float32(1.0 / PER_METRE)
+_SOON = float(Kind.ROUNDED)  # up to this kind they are boxes, with sharp or rounded edges
 _SLACK: Any = np.float32(1e-3)  # metres by which a box is larger than it must be: more than any rounding
 
 
 @inner_kernel
-def boxes_round(near: Nearby, boxes: Floats32) -> None:
-    """Write the boxes round obstacles to `boxes` (SIDES, B), metres."""
+def boxes_round(near: Nearby) -> Floats32:
+    """The boxes round obstacles, (SIDES, B) in metres; (SIDES, 0) where all are boxes, which are soon looked into."""
+    boxes, dear = np.empty((SIDES, near.rows.shape[0]), np.float32), False
     for b in range(near.rows.shape[0]):
+        dear = dear or near.rows[b, KIND] > _SOON
         for i in range(3):
             reach = near.rows[b, ROUNDING] + _SLACK
             for k in range(3):
                 reach += abs(near.rows[b, TURN + 3 * k + i]) * near.rows[b, HALF + k]
             boxes[i, b], boxes[3 + i, b] = near.rows[b, i] - reach, near.rows[b, i] + reach
+    return boxes if dear else boxes[:, :0].copy()
 
 
 @inner_kernel
