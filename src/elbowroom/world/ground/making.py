@@ -10,6 +10,7 @@ from elbowroom.jit import exact_kernel, helper, plain
 from elbowroom.world.clipping import clipped
 from elbowroom.world.ground.gaps import spans_over
 from elbowroom.world.ground.ground import FIRM, PLAIN, RELIEF, SPANS, STEEPEST, STEP, Ground, firm_at
+from elbowroom.world.ground.kept_ground import kept_ground
 from elbowroom.world.obstacles.obstacles import Obstacles
 from elbowroom.world.obstacles.shapes import Mesh
 from elbowroom.world.obstacles.triangles import triangles_of
@@ -43,7 +44,7 @@ def ground_of(obstacles: Obstacles, floor: FloorArea | None = None, step: float 
     within[within] &= (most[within] > RISE) | ~_covered(triangles[within], floor)
     if not within.any():
         return PLAIN
-    return _gridded(triangles, floor, step)
+    return kept_ground(__file__, triangles, floor, step, lambda: _gridded(triangles, floor, step))
 
 
 def walked_over(obstacles: Obstacles, floor: FloorArea | None) -> Obstacles:
