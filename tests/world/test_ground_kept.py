@@ -1,4 +1,4 @@
-"""The ground of a large place is made once and kept on disk: what is read is what was made, to the bit."""
+"""The ground of a place is made once and kept on disk: what is read is what was made, to the bit."""
 
 from pathlib import Path
 from typing import Any

@@ -1,4 +1,4 @@
-"""The ground of large places, kept on disk: it takes a second or two to make, and a place is opened more than once."""
+"""The ground of places, kept on disk: a large one takes seconds to make, and a place is opened more than once."""
 
 from collections.abc import Callable
 from typing import Any
@@ -12,7 +12,7 @@ from elbowroom.world.places.floor_area import FloorArea
 
 Floats = NDArray[np.float64]
 
-_MANY = 2000  # triangles: fewer are made ground at once
+_MANY = 2000  # triangles: fewer, as a scene's own shapes have them, are made ground at once
 _LONE: dict[str, Callable[[Any], Any]] = {
     "plain": bool,
     "step": float,
@@ -29,7 +29,7 @@ def kept_ground(
 
     It is made of triangles (T, 3, 3), of where a place has its `floor`, and of the highest `step`.
     """
-    if len(triangles) < _MANY:
+    if floor is None and len(triangles) < _MANY:
         return make()
     area = () if floor is None else (floor.there, np.array([*floor.origin, floor.cell]))
     return _read(kept(source, (np.array([step]), triangles, *area), lambda: _written(make())))
