@@ -1,17 +1,12 @@
 """What one plan may cost is counted, and what is left over is for the next plan, if that wants the same."""
 
-from types import SimpleNamespace
-from typing import Any
-
 import numpy as np
 
 from elbowroom.body.dof import LOCAL
 from elbowroom.body.root import RootState
 from elbowroom.planning.command import Command
 from elbowroom.planning.exact.plan.attempts import Attempts, LeftOff
-from elbowroom.planning.exact.plan.upper_body_search import Effort
 from elbowroom.planning.motion import MotionQuery
-from elbowroom.planning.root.path import RootPath
 
 STILL = np.zeros(LOCAL)
 QUERY = MotionQuery(0.0, RootState(), STILL, STILL, Command(forward=1.0), 5, 0.15)
@@ -50,35 +45,3 @@ def test_who_walks_and_wants_the_same_goes_on_where_the_plan_before_left_off() -
         attempts.left_off = left_off
         attempts.begin(query, hurry=hurry, stands=stands, moving=moving)
         assert (attempts.left_off == left_off) is goes_on
-
-
-PATH = RootPath(0.0, 0.15, np.zeros((3, 7)))
-
-
-def vain(*, hopeless: bool) -> Any:
-    """What was found on a path on which the upper body has no way."""
-    return SimpleNamespace(
-        plan=SimpleNamespace(evidence=(), joint=None), reached=1, search=SimpleNamespace(hopeless=hopeless)
-    )
-
-
-def test_a_path_counts_for_more_where_treads_are_near_all_limbs() -> None:
-    counts = []
-    for uneven in (False, True):
-        attempts, paths = Attempts(), 0
-        attempts.begin(QUERY, hurry=False, stands=False, uneven=uneven)
-        while not attempts.spent:
-            attempts.enter(PATH, Effort.QUICK, vain(hopeless=False))
-            paths += 1
-        counts.append(paths)
-    assert counts[0] > 4 * counts[1] > 4
-
-
-def test_where_the_waist_itself_has_no_way_nothing_is_sought_all_together() -> None:
-    for hopeless in (False, True):
-        attempts = Attempts()
-        attempts.begin(QUERY, hurry=False, stands=True)
-        attempts.enter(PATH, Effort.QUICK, vain(hopeless=hopeless))
-        assert attempts.failed(PATH, Effort.QUICK) is not None
-        assert (attempts.failed(PATH, Effort.JOINT) is not None) is hopeless
-        assert attempts.failed(PATH, Effort.REFINED) is None

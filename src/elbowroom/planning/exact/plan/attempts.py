@@ -15,8 +15,7 @@ _NEAR = 1e-6  # metres, radians: who has moved by less stands where he stood
 # Work is counted in capsules checked, some 10 to 20 ns each. These cost as much as so many of them: a triple, a node, a
 # path for the upper body, the tables of all groups together, a place of the root.
 _TRIPLE, _NODE, _PATH, _TABLES, _PLACE = 2.5, 10, 150_000, 500_000, 60
-# The same where the ground is uneven: there it is looked up what each foot stands on, and treads are near all limbs.
-_PATH_UNEVEN, _PLACE_UNEVEN = 1_000_000, 600
+_PLACE_UNEVEN = 600  # a place where the ground is uneven: there it is looked up what each foot stands on
 # Work of a plan after which nothing is begun but a safe end: at leisure, and in a hurry. Where something moves, to stop
 # is no safe end, and more is tried at once.
 _MOST, _MOST_IN_A_HURRY = 1.5e6, 5e5
@@ -50,7 +49,7 @@ class Attempts:
 
     def __init__(self) -> None:
         self._work, self._most = 0.0, _MOST  # of this plan, in capsules checked
-        self._path, self._place = _PATH, _PLACE  # what one costs on this ground
+        self._place = _PLACE  # what one costs on this ground
         self._seen: tuple[float, float] | None = None  # the place that ended the commanded path in the plan before
         self._stood: tuple[float, ...] | None = None  # where somebody stands
         self._failed: dict[bytes, _Failed] = {}  # the vain ones from there
@@ -66,7 +65,7 @@ class Attempts:
         `uneven` says that the ground is no plane.
         """
         self._work, self._postponed = 0.0, False
-        self._path, self._place = (_PATH_UNEVEN, _PLACE_UNEVEN) if uneven else (_PATH, _PLACE)
+        self._place = _PLACE_UNEVEN if uneven else _PLACE
         leisure, haste = (_MOST_AMONG_MOVING, _MOST_AMONG_MOVING_IN_A_HURRY) if moving else (_MOST, _MOST_IN_A_HURRY)
         self._most = haste if hurry else leisure
         here, stood = (*query.root, *query.upper.tolist()) if stands else None, self._stood
@@ -88,10 +87,9 @@ class Attempts:
 
     def enter(self, path: RootPath, effort: Effort, upper: UpperPlan) -> None:
         """A path was sought for the upper body."""
-        self._work += self._path + _work(upper.plan)
+        self._work += _PATH + _work(upper.plan)
         if self._stood is not None and upper.reached < path.horizon and len(self._failed) < _REMEMBERED:
-            together = effort is Effort.QUICK and upper.search.hopeless
-            self._failed[path.states.tobytes()] = _Failed(Effort.JOINT if together else effort, upper)
+            self._failed[path.states.tobytes()] = _Failed(effort, upper)
 
     @property
     def spent(self) -> bool:

@@ -50,11 +50,6 @@ class ChildSearch:
         self._problem = problem  # with the goals under the waist's path
         self._contacts: list[Contact] = []  # of all motions along this path
 
-    @property
-    def has_touched(self) -> bool:
-        """Whether a motion along this path ran into the body: what did so is ruled out in the searches after it."""
-        return bool(self._contacts)
-
     def followers(self, waist: GroupPath, guides: Mapping[DofGroup, Guide], evidence_log: EvidenceLog) -> GroupPaths:
         """The paths of those children that could follow the waist; they come first, and depend on no other child."""
         if waist.reached < self._given.path.horizon:

@@ -23,7 +23,6 @@ class EvidenceLog:
         self._rows: list[GroupEvidence] = []
         self._joint_before: JointEvidence | None = None
         self.joint: JointEvidence | None = None
-        self.cut_short = False  # whether a search was ended after as many rounds as it may have
 
     def begin_after(self, earlier: "EvidenceLog") -> None:
         """Keep what earlier searches of the same path cost too."""
@@ -39,7 +38,6 @@ class EvidenceLog:
         way: GroupPath = search_group(scratch, cache, task, self._weights)
         spent = perf_counter_ns() - began
         status = PlanStatus.FOUND if way.reached == len(task.goals) - 1 else PlanStatus.EXHAUSTED
-        self.cut_short |= status is PlanStatus.EXHAUSTED and way.rounds >= self._weights.rounds
         self._rows.append(GroupEvidence(group, status, way.checks, way.nodes, 0, spent))
         return way
 

@@ -164,8 +164,7 @@ class NewPlan:
 
     def _all_together(self, tried: list[_Tried]) -> FullPlan | None:
         """A plan on a root path on which all groups together find one after all: those that led farthest come first."""
-        hopeful = (one for one in tried if not one.upper.search.hopeless)
-        farthest = sorted(hopeful, key=lambda one: -one.upper.reached)[:_THOUGHT_THROUGH]
+        farthest = sorted(tried, key=lambda one: -one.upper.reached)[:_THOUGHT_THROUGH]
         plans = (self._together(one.root) for one in farthest)
         return next((plan for plan in plans if plan is not None), None)
 

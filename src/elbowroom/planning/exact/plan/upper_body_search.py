@@ -85,7 +85,6 @@ class UpperBodySearch:
         self.blocked = 0, 0  # the group, as a number, that failed first, and the key time that it did not reach
         self.spent = False  # whether the joint step did as much as it may
         self._waist: GroupPath | None = None
-        self._guided = False  # whether what could follow it was guided
         # infinite where the legs have no room to crouch as a node does
         self._crouching = no_costs(self.caches, DofGroup.WAIST, self.path.horizon)
 
@@ -104,12 +103,6 @@ class UpperBodySearch:
         """The goals (n+1, LOCAL)."""
         return self.problem.goals
 
-    @property
-    def hopeless(self) -> bool:
-        """Whether it was found that the waist has no way: so no more rounds help, nor do all groups together."""
-        waist = self._waist
-        return waist is not None and waist.reached < self.path.horizon and not self.evidence_log.cut_short
-
     def motion(self, rounds: int) -> LocalPlan | None:
         """The motion, if there is one: group after group, then in so many rounds of the joint step.
 
@@ -119,7 +112,7 @@ class UpperBodySearch:
         waist_has_way = self._waist is not None and self._waist.reached == self.path.horizon
         failed = found.failed is not None
         if last is not None and waist_has_way and (failed or jolts(found.keys, last.keys, last.known)):
-            previous = self.with_previous_waist(found)
+            previous = self.with_previous_waist()
             if found.failed is not None or (
                 previous.failed is None and self._cost(previous) <= self._cost(found) + _JOLT
             ):
@@ -163,7 +156,7 @@ class UpperBodySearch:
             if self._is_better(other, found):
                 found = other
                 trunks.reverse()
-        self._waist, self._guided = trunks[0].waist, bool(trunks[0].guides)
+        self._waist = trunks[0].waist
         self.blocked = len(found.paths), min(found.reached + 1, self.path.horizon)
         return found
 
@@ -227,21 +220,14 @@ class UpperBodySearch:
             self.deepest = max(self.deepest, found.reached)
         return found
 
-    def with_previous_waist(self, known: GroupPaths) -> GroupPaths:
-        """The waist held to the last plan's way while there is one; what is `known` if that is under the same way."""
+    def with_previous_waist(self) -> GroupPaths:
+        """The waist held to the last plan's way while there is one."""
         costs = np.full_like(self._crouching, _DEARER)
         task = self.problem.task(DofGroup.WAIST, self.problem.roots)
         previous = extras_of(self.caches.group(DofGroup.WAIST), task).previous
         costs[np.arange(len(costs)), previous] = 0.0
         waist = self._waist_path(costs + self._crouching)
-        return known if self._is_known(waist) else self._under(waist)
-
-    def _is_known(self, waist: GroupPath) -> bool:
-        """Whether the same was sought under the same way of the waist, and no motion of it ran into the body."""
-        before = self._waist
-        if before is None or self._guided or self._children.has_touched or len(before.keys) != len(waist.keys):
-            return False
-        return bool(np.array_equal(before.keys, waist.keys) and np.array_equal(before.velocities, waist.velocities))
+        return self._under(waist)
 
     def with_waist_held(self) -> GroupPaths:
         """The waist held as it is, while it can be.
