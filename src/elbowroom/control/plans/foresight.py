@@ -1,10 +1,13 @@
 """How far ahead to plan where plans take their time, and how fast to play where they are late."""
 
 import math
+from collections import deque
 from enum import Enum
 
 _LIKELY = 0.03  # seconds that a plan takes until one has been waited for
 _SPARE = 0.02  # seconds
+_REMEMBERED = 12  # plans in a hurry
+_MOSTLY = 0.75  # of these are in time: who waits for the longest waits longer than who asks once more now and then
 _BRAKING = 0.4  # seconds in which playback slows down to a stand, or comes back to its full speed
 
 
@@ -13,11 +16,10 @@ class Haste(Enum):
 
     NONE = "none"  # the motion goes on meanwhile as the user wants it
     HURRY = "hurry"  # something else is wanted than what is played; coming too late costs more than being early
-    AGAIN = "again"  # the last one in a hurry came too late; what it found out is known
+    AGAIN = "again"  # the last one in a hurry came too late
 
 
-_FORGET = {Haste.NONE: 0.7, Haste.HURRY: 0.92, Haste.AGAIN: 0.92}  # of what is expected, with every quicker plan
-_LEAST = {Haste.NONE: 0.0, Haste.HURRY: _LIKELY, Haste.AGAIN: _LIKELY}  # seconds that are always expected
+_FORGET = 0.7  # of what is expected without haste, with every quicker plan
 
 
 class Foresight:
@@ -29,17 +31,24 @@ class Foresight:
 
     def __init__(self, immediate: bool) -> None:
         self._immediate = immediate
-        self._expected = dict.fromkeys(Haste, _LIKELY)
+        self._usual = _LIKELY  # seconds that a plan takes that nobody hurries
+        self._hurried: deque[float] = deque([_LIKELY], maxlen=_REMEMBERED)  # seconds that the last ones took
         self.rate = 1.0  # of playback
 
     def lead(self, haste: Haste) -> float:
         """Seconds from now at which a plan that is asked for now should start."""
-        return 0.0 if self._immediate else self._expected[haste] + _SPARE
+        if self._immediate:
+            return 0.0
+        if haste is Haste.NONE:
+            return self._usual + _SPARE
+        taken = sorted(self._hurried)
+        return (taken[-1] if haste is Haste.AGAIN else taken[int(_MOSTLY * len(taken))]) + _SPARE
 
     def waited(self, seconds: float, haste: Haste) -> None:
         """A plan took so long; one without haste takes no less."""
-        self._expected[haste] = max(seconds, _FORGET[haste] * self._expected[haste], _LEAST[haste])
-        self._expected[Haste.NONE] = max(seconds, self._expected[Haste.NONE])
+        self._usual = max(seconds, _FORGET * self._usual)
+        if haste is not Haste.NONE:
+            self._hurried.append(seconds)
 
     def next_rate(self, left: float, dt: float, *, halting: bool) -> float:
         """The rate for the next `dt` seconds, of `left` seconds of motion; 0 where too little is left to move."""

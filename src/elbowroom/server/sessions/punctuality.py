@@ -1,12 +1,15 @@
 """How punctual a session is: frames against the clock, answers to commands. Times are arguments, in seconds."""
 
 from collections import deque
+from collections.abc import Callable
 
+from elbowroom.planning.command import Command, changed
 from elbowroom.server.percentiles import percentiles
 from elbowroom.server.sessions.meter import Meter
 
 _FRAMES = 600  # that are remembered
 _ANSWERS = 1000
+_WAITING = 64  # commands that may wait
 
 
 class Punctuality:
@@ -17,23 +20,25 @@ class Punctuality:
         self._meter = meter or Meter()
         self._late: deque[float] = deque(maxlen=_FRAMES)
         self._answers: deque[float] = deque(maxlen=_ANSWERS)
-        self._asked: float | None = None
+        self._waiting: deque[tuple[float, Command]] = deque(maxlen=_WAITING)  # since when, the oldest first
 
     def shown(self, late: float) -> None:
         """A frame was ready so long after it was due."""
         self._late.append(late)
         self._meter.frames.add(late)
 
-    def asked(self, now: float) -> None:
+    def asked(self, now: float, command: Command) -> None:
         """A command wants something else than the motion that is shown."""
-        self._asked = now if self._asked is None else self._asked
+        if not self._waiting or changed(self._waiting[-1][1], command):
+            self._waiting.append((now, command))
 
-    def answered(self, now: float) -> None:
-        """The motion that is shown is what the command wants."""
-        if self._asked is not None:
-            self._answers.append(now - self._asked)
-            self._meter.answers.add(now - self._asked)
-            self._asked = None
+    def heard(self, now: float, heeds: Callable[[Command], bool]) -> None:
+        """The motion that is shown `heeds` some commands: they and what was asked for before them wait no longer."""
+        late = next((place for place in range(len(self._waiting), 0, -1) if heeds(self._waiting[place - 1][1])), 0)
+        for _ in range(late):
+            asked, _ = self._waiting.popleft()
+            self._answers.append(now - asked)
+            self._meter.answers.add(now - asked)
 
     @property
     def late_ms(self) -> float:

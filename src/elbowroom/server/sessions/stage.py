@@ -76,7 +76,7 @@ class Stage:
         changed = command != self.command
         self.command, self._acknowledged = command, message.seq
         if changed and not self.walk.heeds(command):
-            self.punctuality.asked(now)
+            self.punctuality.asked(now, command)
         return changed
 
     def release(self) -> None:
@@ -116,8 +116,7 @@ class Stage:
         if self.paused:
             return []
         events = self._step(elapsed * self.speed)
-        if self.walk.heeds(self.command):
-            self.punctuality.answered(now)
+        self.punctuality.heard(now, self.walk.heeds)
         return events
 
     def frame(self, now: float) -> bytes:

@@ -24,6 +24,7 @@ from elbowroom.planning.root.pace import at_speed
 from elbowroom.planning.root.settings import RootMotionSettings
 from elbowroom.planning.stillness import is_still
 from elbowroom.server.schema.bounds import WALK_SPEEDS
+from elbowroom.server.sessions.heeded import Heeded
 from elbowroom.server.sessions.walk_log import WalkLog
 from elbowroom.server.stores.avatar_store import StoredAvatar
 from elbowroom.server.wire.pose import NodePose
@@ -111,6 +112,7 @@ class Walk:
         self._started = 0.0
         self._plan_number = 0
         self.plans_failed = 0
+        self._heeded = Heeded()
         self.frame: Frame = self._controller.step(Command(), 0.0)
 
     def reset(self) -> None:
@@ -135,14 +137,12 @@ class Walk:
             self.stuck_times += 1
             self._stuck_since_start += 1
         self._count_plans()
+        self._heeded.follow(self.frame)
         return self._crossing()
 
     def heeds(self, command: Command) -> bool:
         """Whether the motion that is shown was planned for this command, or for nearly the same."""
-        plan = self.frame.plan
-        if plan is None or self.frame.time < plan.root.path.start_time:
-            return False
-        return not changed(plan.command, at_speed(command, self.settings.walk_speed))
+        return not changed(self._heeded.command, at_speed(command, self.settings.walk_speed))
 
     def node_pose(self) -> NodePose:
         """What the avatar's nodes get now."""

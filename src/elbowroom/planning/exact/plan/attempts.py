@@ -20,8 +20,9 @@ _PLACE_UNEVEN = 600  # a place where the ground is uneven: there it is looked up
 # is no safe end, and more is tried at once.
 _MOST, _MOST_IN_A_HURRY = 1.5e6, 5e5
 _MOST_AMONG_MOVING, _MOST_AMONG_MOVING_IN_A_HURRY = 2e6, 8e5
+_WAITED_FOR = 0.5  # the share of that for a plan that somebody waits for, who sees what was planned before meanwhile
 _LITTLE = 5e5  # work of a plan in which it is asked why there is no path
-_ORDER = Effort.QUICK, Effort.JOINT, Effort.REFINED  # from little to much
+_ORDER = Effort.GLANCE, Effort.QUICK, Effort.JOINT, Effort.REFINED  # from little to much
 _REMEMBERED = 200  # root paths
 
 
@@ -67,7 +68,7 @@ class Attempts:
         self._work, self._postponed = 0.0, False
         self._place = _PLACE_UNEVEN if uneven else _PLACE
         leisure, haste = (_MOST_AMONG_MOVING, _MOST_AMONG_MOVING_IN_A_HURRY) if moving else (_MOST, _MOST_IN_A_HURRY)
-        self._most = haste if hurry else leisure
+        self._most = (_WAITED_FOR * haste if query.hurry else haste) if hurry else leisure
         here, stood = (*query.root, *query.upper.tolist()) if stands else None, self._stood
         if here is None or stood is None or max(abs(a - b) for a, b in zip(here, stood, strict=True)) > _NEAR:
             self._failed.clear()

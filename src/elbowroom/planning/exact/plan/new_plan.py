@@ -78,7 +78,7 @@ class NewPlan:
             self._attempts.enter_root(root.checks)
             if number < before or (number > 0 and self._leads_nowhere_new(root, blocked_at + _FARTHER)):
                 continue
-            upper = self._upper_body(root.path, Effort.QUICK)
+            upper = self._upper_body(root.path, self._least)
             if number == 0 and upper.reached < self.horizon:
                 if left is None and self._can_wait(upper) and (plan := self._braked(root, upper.reached)) is not None:
                     return plan
@@ -108,6 +108,11 @@ class NewPlan:
                 break
             upper = self._upper_body(path, effort)
         return upper
+
+    @property
+    def _least(self) -> Effort:
+        """What is tried on every root path."""
+        return Effort.GLANCE if self.query.hurry else Effort.QUICK
 
     @property
     def _attempts(self) -> Attempts:
@@ -204,7 +209,7 @@ class NewPlan:
     def _braked(self, root: RootPlan, reached: int, *, harsh: bool = False) -> FullPlan | None:
         """A plan on a root path that is braked as late as possible; the upper body came as far as `reached` on it."""
         spent = self._attempts.spent
-        brakings = [(moving, Effort.QUICK) for moving in _moving(reached, _SAFELY if spent else _EARLIER)]
+        brakings = [(moving, self._least) for moving in _moving(reached, _SAFELY if spent else _EARLIER)]
         brakings += [] if self.hurry or spent else [(0, Effort.JOINT)]
         for moving, effort in brakings:
             states = root.path.states.copy()

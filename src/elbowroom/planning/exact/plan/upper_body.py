@@ -89,10 +89,10 @@ class UpperBodyPlanner:
         path = self._legs.stood(path)
         near = self._near(path, others)
         legs = self._legs.among(others, path)
-        rounds = 0 if effort is Effort.QUICK else self.settings.guided_rounds
-        weights = self._quick_weights if effort is Effort.QUICK else self._weights
+        quick, again = effort in (Effort.GLANCE, Effort.QUICK), effort is not Effort.GLANCE
+        rounds, weights = (0, self._quick_weights) if quick else (self.settings.guided_rounds, self._weights)
         search = after or self._search_of(path, begins, previous, near, legs, weights, go_on)
-        found = None if after is not None else search.motion(rounds)
+        found = None if after is not None else search.motion(rounds, again=again)
         if found is None and effort is Effort.REFINED and not search.spent and self._refine(search):
             before, search = search, self._search_of(path, begins, previous, near, legs, weights, go_on)
             if after is None:

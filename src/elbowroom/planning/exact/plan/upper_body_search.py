@@ -53,7 +53,8 @@ class Effort(Enum):
 
     __hash__ = object.__hash__  # as `DofGroup` has it
 
-    QUICK = "quick"  # the groups one after the other
+    GLANCE = "glance"  # the groups one after the other
+    QUICK = "quick"  # where these find none, once more under the last plan's waist, or with the waist held
     JOINT = "joint"  # then all together
     REFINED = "refined"  # then with more postures
 
@@ -103,12 +104,15 @@ class UpperBodySearch:
         """The goals (n+1, LOCAL)."""
         return self.problem.goals
 
-    def motion(self, rounds: int) -> LocalPlan | None:
-        """The motion, if there is one: group after group, then in so many rounds of the joint step.
+    def motion(self, rounds: int, *, again: bool = True) -> LocalPlan | None:
+        """The motion, if there is one: group after group, `again` under another waist, then in so many rounds of the
+        joint step.
 
         One that would jolt what was planned gives way to one under the last plan's waist that costs no more, or hardly.
         """
         found, last = self.apart(), self.problem.last
+        if found.failed is not None and not again:
+            return None
         waist_has_way = self._waist is not None and self._waist.reached == self.path.horizon
         failed = found.failed is not None
         if last is not None and waist_has_way and (failed or jolts(found.keys, last.keys, last.known)):
