@@ -1,4 +1,4 @@
-"""Which command the motion that is shown was planned for: a plan is shown from its start on, until another one begins."""
+"""Which command the shown motion was planned for: a plan is shown from its start on, until another one begins."""
 
 from collections import deque
 
