@@ -121,7 +121,7 @@ def _nearest(humanoid: Humanoid, scene: Scene, q: Floats, roots: Floats, times: 
     found = np.full(len(q), -1, np.int32)
     for n, (root, time) in enumerate(zip(roots, times.tolist(), strict=True)):
         own = capsules[:, :, n].astype(np.float64) - np.tile([root[0], 0.0, root[1]], 2)
-        nearest = scene.obstacles.nearest(own, humanoid.capsules.radii, root[:2], time)
+        nearest = scene.obstacles.nearest_pair(own, humanoid.capsules.radii, root[:2], time)
         found[n] = -1 if nearest is None else nearest.obstacle
     return found
 

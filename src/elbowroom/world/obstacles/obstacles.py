@@ -234,6 +234,18 @@ class Obstacles:
         self, segments: ArrayLike, radii: ArrayLike, origin: Sequence[float] | Floats, time: float
     ) -> "Nearest | None":
         """The closest pair of a capsule (C, 6), about a place as in `clearance`, and an obstacle; None without any."""
+        axes = np.asarray(segments, np.float64)
+        pair = self.nearest_pair(axes, radii, origin, time)
+        if pair is None:
+            return None
+        on_axis, on_obstacle = closest_points(axes[pair.capsule], pair.there)
+        shift = np.array([origin[0], 0.0, origin[1]], np.float64)
+        return Nearest(pair.capsule, pair.obstacle, pair.distance, on_axis[0] + shift, on_obstacle[0] + shift)
+
+    def nearest_pair(
+        self, segments: ArrayLike, radii: ArrayLike, origin: Sequence[float] | Floats, time: float
+    ) -> "Pair | None":
+        """The same without its points: a tenth of the work."""
         x, z = float(origin[0]), float(origin[1])
         axes, best = np.asarray(segments, np.float64), None
         if len(self.moving):
@@ -246,10 +258,7 @@ class Obstacles:
                     best = found._replace(obstacle=int(numbers[found.obstacle]))
             if best is not None and best.distance <= reach:
                 break
-        if best is None:
-            return None
-        shift = np.array([x, 0.0, z])
-        return best._replace(on_axis=best.on_axis + shift, on_obstacle=best.on_obstacle + shift)
+        return best
 
     def _wider_and_wider(
         self, segments: ArrayLike, radii: ArrayLike, x: float, z: float, floor: float = -np.inf
@@ -276,6 +285,15 @@ class Obstacles:
             within = (lowest <= most[1] + reach) & (highest >= least[1] - reach)
             yield reach, numbers[within & (highest > floor)]
             reach *= _WIDER
+
+
+class Pair(NamedTuple):
+    """A capsule and the obstacle that is closest to it."""
+
+    capsule: int
+    obstacle: int
+    distance: float  # metres; negative where they overlap
+    there: Nearby  # the obstacle by itself, as seen from the place that was asked about
 
 
 class Nearest(NamedTuple):
@@ -318,10 +336,10 @@ def _least(segments: Floats32, radii: ArrayLike, near: Nearby) -> float:
     return float(clearance(segments, radii, near).min(initial=np.inf))
 
 
-def _nearest(axes: Floats, radii: ArrayLike, near: Nearby) -> Nearest:
+def _nearest(axes: Floats, radii: ArrayLike, near: Nearby) -> Pair:
     """The closest pair of capsules and obstacles, of each at least one."""
     obstacle = int(np.argmin(clearance_from_each(axes, radii, near)))
-    gaps = pairwise_clearance(axes[:, :, None], radii, one_of(near, obstacle))[:, 0, 0]
+    there = one_of(near, obstacle)
+    gaps = pairwise_clearance(axes[:, :, None], radii, there)[:, 0, 0]
     capsule = int(np.argmin(gaps))
-    on_axis, on_obstacle = closest_points(axes[capsule], one_of(near, obstacle))
-    return Nearest(capsule, obstacle, float(gaps[capsule]), on_axis[0], on_obstacle[0])
+    return Pair(capsule, obstacle, float(gaps[capsule]), there)
