@@ -1,5 +1,6 @@
 """The columns of a dataset's files: one row is one walk, and what it holds for each frame is a list."""
 
+from collections.abc import Iterator
 from typing import NamedTuple
 
 import pyarrow as pa
@@ -63,3 +64,12 @@ COLUMNS = (
 )  # fmt: skip
 
 SCHEMA = pa.schema([pa.field(column.name, column.kind, nullable=False) for column in COLUMNS])
+
+
+def leaves(schema: pa.Schema) -> Iterator[tuple[str, pa.DataType]]:
+    """The paths of a Parquet file's columns of plain values, and of what kind these are."""
+    for field in schema:
+        path, kind = field.name, field.type
+        while pa.types.is_list(kind) or pa.types.is_fixed_size_list(kind):
+            path, kind = f"{path}.list.element", kind.value_type
+        yield path, kind
