@@ -22,6 +22,7 @@ from elbowroom.experiment.judge.patches import patches_of
 from elbowroom.experiment.judge.poses import Posed, Poser
 from elbowroom.experiment.judge.settings import JudgeSettings
 from elbowroom.experiment.judge.skin import Skin, skin_of
+from elbowroom.experiment.judge.stretches import stretches_of
 from elbowroom.experiment.judge.verdict import judge
 from elbowroom.formats.gltf import parse_gltf
 from elbowroom.formats.nodes import read_nodes
@@ -163,16 +164,24 @@ def test_patches_hold_every_triangle_once() -> None:
     assert sorted(map(tuple, rows)) == sorted(map(tuple, SKIN.triangles))
 
 
-def test_patches_are_never_farther_than_they_seem() -> None:
+@pytest.mark.parametrize("wild", [False, True])
+def test_patches_are_never_farther_than_they_seem(wild: bool) -> None:
+    """In each pose by itself, and in stretches of poses, be they neighbours or as unlike each other as can be."""
     rng = np.random.default_rng(11)
-    posed = poses(STOCK, *random_postures(rng, 5))
-    patches, every = patches_of(SKIN), np.arange(5)
-    spans = patches.spans(posed)
+    q, roots = random_postures(rng, 11)
+    share = np.linspace(0.0, 0.05, 11)[:, None]
+    one = (q, roots) if wild else tuple(each[0] + share * (each[1] - each[0]) for each in (q, roots))
+    posed = poses(STOCK, *one)
+    patches, every, stretches = patches_of(SKIN), np.arange(11), stretches_of(posed)
+    spans = patches.spans(posed, stretches)
+    of_pose = np.repeat(np.arange(len(stretches.middles)), 8)[:11]
     for obstacle in obstacles_of(scene_with(random_boxes(rng, 2))):
-        wide = obstacle.world_distance(*spans)
+        wide = obstacle.world_distance(*spans)[of_pose]
         for i, patch in enumerate(patches.patches):
             bounds = patches.bounds(i, posed, every, obstacle)
-            beyond = np.abs(obstacle.seen_from(SKIN.vertices(posed, patch.vertices))) - obstacle.half_size
+            vertices = SKIN.vertices(posed, patch.vertices)
+            assert patch.carried.vertices(posed, every) == pytest.approx(vertices, abs=1e-9)
+            beyond = np.abs(obstacle.seen_from(vertices)) - obstacle.half_size
             true = np.linalg.norm(np.maximum(beyond, 0.0), axis=-1).min(axis=1)
             assert (bounds <= true + 1e-9).all()
             assert (wide[:, i] <= true + 1e-9).all()

@@ -10,10 +10,15 @@ from elbowroom.body.humanoid import Humanoid
 from elbowroom.experiment.judge.around import Around
 from elbowroom.experiment.judge.capsule_shapes import CapsuleShapes, Placed
 from elbowroom.experiment.judge.ledger import Ledger, Nearness
+from elbowroom.experiment.judge.nearest_first import nearest_first
 from elbowroom.experiment.judge.obstacles import Obstacle, coal_library
 from elbowroom.experiment.judge.poses import Posed
+from elbowroom.experiment.judge.stretches import stretches_of
 
 Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+_AT_ONCE = 32  # capsules, each in a stretch, that are looked at before the limit is asked again
 
 
 class CapsuleJudge:
@@ -24,28 +29,42 @@ class CapsuleJudge:
         self._shapes = CapsuleShapes(humanoid)
         self._request = self._coal.DistanceRequest()
 
+    @property
+    def reach(self) -> float:
+        """Metres that anything of the body is away from the joint that carries it, at most."""
+        return self._shapes.reach
+
     def judge(self, posed: Posed, times: Floats, first: int, ledger: Ledger) -> None:
         """Enter what the capsules do at N poses, whose numbers begin at `first`."""
-        placed = self._shapes.placed(posed)
-        reach = np.abs(placed.half_axes) + self._shapes.radii[:, None]
-        low, high = (placed.middles - reach).min(axis=(0, 1)), (placed.middles + reach).max(axis=(0, 1))
+        placed, stretches = self._shapes.placed(posed), stretches_of(posed)
+        middle, away = placed.at(stretches.middles), self._shapes.away(stretches)
+        reach = np.abs(middle.half_axes) + (self._shapes.radii + away)[..., None]
+        low, high = (middle.middles - reach).min(axis=(0, 1)), (middle.middles + reach).max(axis=(0, 1))
         for least, obstacle in self._around.nearest_first(low, high):
             if least > ledger.limit:
                 return
-            bounds = self._bounds(placed, obstacle)  # (N, C)
-            near = np.argwhere(bounds <= ledger.limit)
-            for pose, capsule in near[np.argsort(bounds[bounds <= ledger.limit], kind="stable")].tolist():
-                if bounds[pose, capsule] > ledger.limit:
-                    break
-                distance = self._distance(capsule, self._shapes.place(placed, pose, capsule), obstacle)
-                found = Nearness(self._shapes.names[capsule], obstacle.name, float(times[pose]), distance)
-                ledger.enter(first + pose, found)
+            wide = self._bounds(middle.middles, middle.half_axes, obstacle) - self._shapes.radii - away
+            for some, capsules in nearest_first(wide, lambda: ledger.limit, _AT_ONCE):
+                rows = stretches.rows(some)
+                every = np.broadcast_to(capsules[:, None], rows.shape)
+                self._judge_near(placed, rows.ravel(), every.ravel(), obstacle, times, first, ledger)
 
-    def _bounds(self, placed: Placed, obstacle: Obstacle) -> Floats:
-        """A lower bound (N, C) of the distances: that of the boxes round axis and obstacle, less the radius."""
-        middle, reach = obstacle.seen_from(placed.middles), np.abs(placed.half_axes @ obstacle.to_box.T)
-        bounds: Floats = obstacle.box_distance(middle - reach, middle + reach) - self._shapes.radii
-        return bounds
+    def _judge_near(
+        self, placed: Placed, rows: Ints, capsules: Ints, obstacle: Obstacle, times: Floats, first: int, ledger: Ledger
+    ) -> None:
+        """Enter what capsules (n,) do to an obstacle at poses `rows` (n,)."""
+        axes = placed.middles[rows, capsules], placed.half_axes[rows, capsules]
+        bounds = self._bounds(*axes, obstacle) - self._shapes.radii[capsules]
+        for (some,) in nearest_first(bounds, lambda: ledger.limit, 1):
+            pose, capsule = int(rows[some[0]]), int(capsules[some[0]])
+            distance = self._distance(capsule, self._shapes.place(placed, pose, capsule), obstacle)
+            found = Nearness(self._shapes.names[capsule], obstacle.name, float(times[pose]), distance)
+            ledger.enter(first + pose, found)
+
+    def _bounds(self, middles: Floats, half_axes: Floats, obstacle: Obstacle) -> Floats:
+        """A lower bound (...) of the distances of axes (..., 3): that of the boxes round axis and obstacle."""
+        middle, reach = obstacle.seen_from(middles), np.abs(half_axes @ obstacle.to_box.T)
+        return obstacle.box_distance(middle - reach, middle + reach)
 
     def _distance(self, capsule: int, place: Any, obstacle: Obstacle) -> float:
         result, shape = self._coal.DistanceResult(), self._shapes.shapes[capsule]

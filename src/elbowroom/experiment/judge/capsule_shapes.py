@@ -8,9 +8,11 @@ from numpy.typing import NDArray
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.experiment.judge.obstacles import coal_library
 from elbowroom.experiment.judge.poses import Posed
+from elbowroom.experiment.judge.stretches import Stretches
 from elbowroom.geometry import quaternion
 
 Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
 
 _POINT = 1e-9  # metres: a shorter capsule is a ball
 
@@ -22,6 +24,10 @@ class Placed(NamedTuple):
     middles: Floats  # (N, C, 3) metres
     half_axes: Floats  # (N, C, 3)
 
+    def at(self, rows: Ints) -> "Placed":
+        """At some of the poses."""
+        return Placed(self.turns[rows], self.middles[rows], self.half_axes[rows])
+
 
 class CapsuleShapes:
     """The collision body of one avatar."""
@@ -31,6 +37,7 @@ class CapsuleShapes:
         self.names, self.radii = capsules.names, capsules.radii
         self._joints = capsules.joints
         self._middles = 0.5 * (capsules.starts + capsules.ends)
+        self._farthest = np.maximum(*(np.linalg.norm(ends, axis=1) for ends in (capsules.starts, capsules.ends)))
         axes = capsules.ends - capsules.starts
         lengths = np.linalg.norm(axes, axis=1)
         upright = np.where(lengths[:, None] > _POINT, axes, [0.0, 0.0, 1.0])
@@ -46,6 +53,15 @@ class CapsuleShapes:
         turns = posed.rotations[:, self._joints]
         middles = posed.positions[:, self._joints] + np.einsum("ncij,cj->nci", turns, self._middles)
         return Placed(turns, middles, np.einsum("ncij,cj->nci", turns, self._half_axes))
+
+    @property
+    def reach(self) -> float:
+        """Metres that anything of the body is away from the joint that carries it, at most."""
+        return float((self._farthest + self.radii).max())
+
+    def away(self, stretches: Stretches) -> Floats:
+        """How far (S, C) axes are, at any pose of a stretch, at most from where they are at its middle one, metres."""
+        return stretches.away(self._joints, self._farthest)
 
     def place(self, placed: Placed, pose: int, capsule: int) -> Any:
         """Where the library has to put a capsule's shape."""

@@ -43,6 +43,11 @@ class Ledger:
         return np.inf if self.least is None else max(self.least.clearance, 0.0)
 
     @property
+    def depth_limit(self) -> float:
+        """The same where bounds tell how deep as well: who knows of a touch asks for deeper ones and for contacts."""
+        return np.inf if self.least is None else max(self.least.clearance, -self.tolerance)
+
+    @property
     def contacts(self) -> tuple[Contact, ...]:
         """All contacts, the deepest first."""
         return tuple(sorted(self._contacts.values(), key=lambda contact: contact.deepest.clearance))

@@ -10,28 +10,37 @@ from elbowroom.body.skeleton import Skeleton
 from elbowroom.experiment.judge.around import Around
 from elbowroom.experiment.judge.crossing_triangles import crossing_depths
 from elbowroom.experiment.judge.ledger import Ledger, Nearness
+from elbowroom.experiment.judge.nearest_first import nearest_first
 from elbowroom.experiment.judge.obstacles import Obstacle, coal_library
 from elbowroom.experiment.judge.patches import Patch, patches_of
 from elbowroom.experiment.judge.pieces import MOST, Piece
 from elbowroom.experiment.judge.poses import Posed
 from elbowroom.experiment.judge.skin import Skin
+from elbowroom.experiment.judge.stretches import Stretches, stretches_of
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
+_KNOWN = 50_000  # patches, each in a pose, that are kept: some 100 MB
+_AT_ONCE = 24  # poses at which a patch is looked at, the nearest first: those after them may be too far then
+
 
 class _Moments:
-    """Some poses, and the skin in them: a patch is posed once, when it is first asked for."""
+    """Some poses, and the skin in them: a patch is posed once in each, when it is first asked for."""
 
-    def __init__(self, skin: Skin, posed: Posed, times: Floats, first: int) -> None:
+    def __init__(self, posed: Posed, times: Floats, first: int) -> None:
         self.posed, self.times, self.first = posed, times, first
-        self._skin, self._known = skin, dict[int, Floats]()
+        self.stretches: Stretches = stretches_of(posed)
+        self._known = dict[tuple[int, int], Floats]()  # by patch and pose
 
-    def points(self, number: int, patch: Patch) -> Floats:
-        """The vertices (N, v, 3) of a patch of that number, in the world."""
-        if number not in self._known:
-            self._known[number] = self._skin.vertices(self.posed, patch.vertices)
-        return self._known[number]
+    def points(self, number: int, patch: Patch, rows: Ints) -> Floats:
+        """The vertices (n, v, 3) of a patch of that number at some poses, in the world."""
+        if len(self._known) > _KNOWN:
+            self._known.clear()
+        new = [row for row in rows.tolist() if (number, row) not in self._known]
+        for row, points in zip(new, patch.carried.vertices(self.posed, np.array(new, np.int64)), strict=True):
+            self._known[number, row] = points
+        return np.stack([self._known[number, row] for row in rows.tolist()])
 
 
 class MeshJudge:
@@ -42,44 +51,53 @@ class MeshJudge:
     """
 
     def __init__(self, skin: Skin, skeleton: Skeleton, obstacles: Sequence[Obstacle]) -> None:
-        self._coal, self._skin, self._around = coal_library(), skin, Around(obstacles)
+        self._coal, self._around = coal_library(), Around(obstacles)
         self._patches = patches_of(skin)
         self._regions = [region_of(bone) for bone in skeleton.names]
         self._nearest = self._coal.DistanceRequest()
 
+    @property
+    def reach(self) -> float:
+        """Metres that anything of the skin is away from the nearest of its joints, at most."""
+        return self._patches.reach
+
     def judge(self, posed: Posed, times: Floats, first: int, ledger: Ledger) -> None:
         """Enter what the surface does at N poses, whose numbers begin at `first`."""
-        moments = _Moments(self._skin, posed, times, first)
-        low, high = self._patches.spans(posed)  # (N, P, 3)
+        moments = _Moments(posed, times, first)
+        low, high = self._patches.spans(posed, moments.stretches)  # (S, P, 3)
         lowest, highest = low.min(axis=1), high.max(axis=1)
         for least, obstacle in self._around.nearest_first(lowest.min(axis=0), highest.max(axis=0)):
             if least > ledger.limit:
                 return
-            rows = np.flatnonzero(obstacle.world_distance(lowest, highest) <= ledger.limit)
-            if len(rows):
-                self._judge_obstacle(rows, obstacle.world_distance(low[rows], high[rows]), moments, obstacle, ledger)
+            some = np.flatnonzero(obstacle.world_distance(lowest, highest) <= ledger.limit)
+            if len(some):
+                self._judge_obstacle(some, obstacle.world_distance(low[some], high[some]), moments, obstacle, ledger)
 
     def _judge_obstacle(
-        self, rows: Ints, bounds: Floats, moments: _Moments, obstacle: Obstacle, ledger: Ledger
+        self, some: Ints, bounds: Floats, moments: _Moments, obstacle: Obstacle, ledger: Ledger
     ) -> None:
-        """Enter what the surface does to an obstacle at poses `rows` (n,); no patch is nearer than `bounds` (n, P)."""
+        """Enter what the surface does to an obstacle in stretches `some` (s,); none is nearer than `bounds` (s, P)."""
+        stretches = moments.stretches
         if ledger.least is None:  # one pose first: from then on the ledger has a limit
-            row, number = np.unravel_index(bounds.argmin(), bounds.shape)
-            self._judge_patch(int(number), rows[[row]], moments, obstacle, ledger)
+            nearest, number = np.unravel_index(bounds.argmin(), bounds.shape)
+            self._judge_patch(int(number), stretches.middles[some[[nearest]]], moments, obstacle, ledger)
         near, nearest = bounds <= ledger.limit, bounds.min(axis=0)
         numbers = np.flatnonzero(near.any(axis=0))
         for number in numbers[np.argsort(nearest[numbers], kind="stable")].tolist():
             if nearest[number] > ledger.limit:
                 return
-            self._judge_patch(number, rows[near[:, number]], moments, obstacle, ledger)
+            self._judge_patch(number, np.unique(stretches.rows(some[near[:, number]])), moments, obstacle, ledger)
 
     def _judge_patch(self, number: int, rows: Ints, moments: _Moments, obstacle: Obstacle, ledger: Ledger) -> None:
         """Enter what a patch does to an obstacle at those poses `rows` (n,) at which it may be near."""
+        bounds = self._patches.bounds(number, moments.posed, rows, obstacle)
+        for (some,) in nearest_first(bounds, lambda: ledger.limit, _AT_ONCE):
+            self._judge_triangles(number, rows[some], moments, obstacle, ledger)
+
+    def _judge_triangles(self, number: int, rows: Ints, moments: _Moments, obstacle: Obstacle, ledger: Ledger) -> None:
+        """Enter what the triangles of a patch do to an obstacle at some poses `rows` (n,)."""
         patch = self._patches.patches[number]
-        rows = rows[self._patches.bounds(number, moments.posed, rows, obstacle) <= ledger.limit]
-        if not len(rows):
-            return
-        points = moments.points(number, patch)[rows]
+        points = moments.points(number, patch, rows)
         corners = obstacle.seen_from(points)[:, patch.triangles]  # (n, t, 3, 3)
         gaps = obstacle.box_distance(corners.min(axis=2), corners.max(axis=2))  # (n, t)
         for row in np.argsort(gaps.min(axis=1)):

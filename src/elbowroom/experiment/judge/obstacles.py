@@ -90,6 +90,17 @@ class Surroundings:
     obstacles: tuple[Obstacle, ...]
     track: Track | None  # by which they move; None: they stand still
 
+    def near(self, posed: Posed, times: Floats, within: float) -> slice:
+        """The poses of N, from the first to the last, at which a joint may be nearer than so many metres."""
+        if self.track is None or np.isinf(within):
+            return slice(0, len(times))
+        centers = self.track.poses(times)[0]
+        between = posed.positions - centers[:, None]
+        nearest = np.sqrt(np.einsum("nji,nji->nj", between, between).min(axis=1))
+        around = max(float(np.linalg.norm(one.center) + np.linalg.norm(one.half_size)) for one in self.obstacles)
+        rows = np.flatnonzero(nearest <= within + around)
+        return slice(int(rows[0]), int(rows[-1]) + 1) if len(rows) else slice(0, 0)
+
     def seen(self, posed: Posed, times: Floats) -> Posed:
         """The joints of N poses at the scene's times (N,) as seen from the moving frame."""
         if self.track is None:

@@ -5,13 +5,15 @@ hull of one box for each of its joints: that round the patch's vertices as this 
 """
 
 from dataclasses import dataclass
+from functools import cached_property, lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.experiment.judge.obstacles import Obstacle
 from elbowroom.experiment.judge.poses import Posed
-from elbowroom.experiment.judge.skin import Skin
+from elbowroom.experiment.judge.skin import Carried, Skin
+from elbowroom.experiment.judge.stretches import Stretches
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -26,6 +28,7 @@ class Patch:
     joint: int  # that carries most of it
     vertices: Ints  # (v,) into the skin's vertices
     triangles: Ints  # (t, 3) into `vertices`
+    carried: Carried  # the vertices
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,11 +41,31 @@ class Patches:
     centers: Floats  # (B, 3) in the joint's frame
     half_sizes: Floats  # (B, 3)
 
-    def spans(self, posed: Posed) -> tuple[Floats, Floats]:
-        """The corners (N, P, 3) of boxes along the world's axes that hold the patches at N poses."""
-        own = posed.rotations[:, self.joints]
-        middle = np.einsum("nbij,bj->nbi", own, self.centers) + posed.positions[:, self.joints]
-        reach = np.einsum("nbij,bj->nbi", np.abs(own), self.half_sizes)
+    @cached_property
+    def _of_joints(self) -> list[tuple[int, Ints]]:
+        """Each joint that has boxes, and which."""
+        return [(int(joint), np.flatnonzero(self.joints == joint)) for joint in np.unique(self.joints)]
+
+    @cached_property
+    def _farthest(self) -> Floats:
+        """How far (B,) from its joint anything in a box is at most, metres."""
+        farthest: Floats = np.linalg.norm(np.abs(self.centers) + self.half_sizes, axis=1)
+        return farthest
+
+    @property
+    def reach(self) -> float:
+        """Metres that anything of the skin is away from the nearest of its joints, at most."""
+        return float(self._farthest.max())
+
+    def spans(self, posed: Posed, stretches: Stretches) -> tuple[Floats, Floats]:
+        """The corners (S, P, 3) of boxes along the world's axes that hold the patches at all poses of S stretches."""
+        middles, shape = stretches.middles, (len(stretches.middles), len(self.joints), 3)
+        middle, reach = np.empty(shape), np.empty(shape)
+        for joint, boxes in self._of_joints:
+            turns = posed.rotations[middles, joint]  # (S, 3, 3)
+            middle[:, boxes] = self.centers[boxes] @ np.swapaxes(turns, 1, 2) + posed.positions[middles, None, joint]
+            reach[:, boxes] = self.half_sizes[boxes] @ np.swapaxes(np.abs(turns), 1, 2)
+        reach += stretches.away(self.joints, self._farthest)[..., None]
         low, high = middle - reach, middle + reach
         return np.minimum.reduceat(low, self.starts, axis=1), np.maximum.reduceat(high, self.starts, axis=1)
 
@@ -51,13 +74,20 @@ class Patches:
         ends = np.append(self.starts, len(self.joints))
         boxes = slice(ends[number], ends[number + 1])
         joints = self.joints[boxes]
-        own = np.einsum("ij,nbjl->nbil", obstacle.to_box, posed.rotations[rows[:, None], joints])
+        own = obstacle.to_box @ posed.rotations[rows[:, None], joints]
         places = obstacle.seen_from(posed.positions[rows[:, None], joints])
-        middle = np.einsum("nbij,bj->nbi", own, self.centers[boxes]) + places
-        reach = np.einsum("nbij,bj->nbi", np.abs(own), self.half_sizes[boxes])
+        middle = _each_turned(own, self.centers[boxes]) + places
+        reach = _each_turned(np.abs(own), self.half_sizes[boxes])
         return obstacle.box_distance((middle - reach).min(axis=1), (middle + reach).max(axis=1))
 
 
+def _each_turned(turns: Floats, vectors: Floats) -> Floats:
+    """Vectors (B, 3), each turned by its own matrix of (..., B, 3, 3)."""
+    turned: Floats = (turns @ vectors[..., None])[..., 0]
+    return turned
+
+
+@lru_cache(maxsize=8)  # a skin is judged in many walks
 def patches_of(skin: Skin) -> Patches:
     """Cut a skin into patches."""
     patches = tuple(_patch(skin, rows) for rows in _pieces(skin))
@@ -91,7 +121,7 @@ def _pieces(skin: Skin) -> list[Ints]:
 def _patch(skin: Skin, rows: Ints) -> Patch:
     corners = skin.triangles[rows]
     vertices, places = np.unique(corners, return_inverse=True)
-    return Patch(int(skin.joints[corners[0, 0], 0]), vertices, places.reshape(-1, 3))
+    return Patch(int(skin.joints[corners[0, 0], 0]), vertices, places.reshape(-1, 3), skin.carried(vertices))
 
 
 def _boxes(skin: Skin, patch: Patch) -> tuple[Ints, Floats, Floats]:

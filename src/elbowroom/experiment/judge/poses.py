@@ -39,6 +39,10 @@ class Posed(NamedTuple):
     positions: Floats  # (N, J, 3) metres
     rotations: Floats  # (N, J, 3, 3)
 
+    def part(self, rows: slice) -> "Posed":
+        """Some of the poses."""
+        return Posed(self.positions[rows], self.rotations[rows])
+
 
 class Poser:
     """Poses one avatar as its page does; frozen."""
@@ -79,7 +83,7 @@ class Poser:
         Places are x, z, heading, and its height where it is not 0.
         """
         rest, parents = self.skeleton.positions, self.skeleton.parents
-        turns = quaternion.to_matrix(local)
+        turns = _matrices(local)
         heading = quaternion.to_matrix(quaternion.about_axis(_UP, places[:, 2]))
         heights = places[:, 3] if places.shape[1] > 3 else np.zeros(len(places))
         ground = np.stack([places[:, 0], heights, places[:, 1]], axis=-1)
@@ -213,6 +217,18 @@ def _bent(target: Floats, thigh: np.floating, shin: np.floating, hint: Floats) -
     aside = np.sqrt(np.maximum(thigh**2 - along**2, 0.0))
     to_knee = along[:, None] * direction + aside[:, None] * np.cross(direction, axis)
     return to_knee, reach[:, None] * direction - to_knee, axis
+
+
+def _matrices(turns: Floats) -> Floats:
+    """The matrices (..., 3, 3) of unit quaternions (..., 4)."""
+    x, y, z, w = np.moveaxis(turns, -1, 0)
+    matrices = np.empty((*turns.shape[:-1], 3, 3))
+    matrices[..., 0, 0], matrices[..., 1, 1] = 1.0 - 2.0 * (y * y + z * z), 1.0 - 2.0 * (x * x + z * z)
+    matrices[..., 2, 2] = 1.0 - 2.0 * (x * x + y * y)
+    matrices[..., 0, 1], matrices[..., 1, 0] = 2.0 * (x * y - z * w), 2.0 * (x * y + z * w)
+    matrices[..., 0, 2], matrices[..., 2, 0] = 2.0 * (x * z + y * w), 2.0 * (x * z - y * w)
+    matrices[..., 1, 2], matrices[..., 2, 1] = 2.0 * (y * z - x * w), 2.0 * (y * z + x * w)
+    return matrices
 
 
 def _axes(bone: Floats, hint: Floats) -> Floats:

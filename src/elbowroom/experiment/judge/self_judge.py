@@ -12,21 +12,33 @@ from numpy.typing import NDArray
 from elbowroom.body.bones import SPINE
 from elbowroom.body.dof import ARMS, DOF, DofGroup
 from elbowroom.body.humanoid import Humanoid
+from elbowroom.body.made_once import made_once
 from elbowroom.body.root import ROOT_STATE
 from elbowroom.experiment.judge.capsule_shapes import CapsuleShapes, Placed
 from elbowroom.experiment.judge.ledger import Ledger, Nearness
+from elbowroom.experiment.judge.nearest_first import nearest_first
 from elbowroom.experiment.judge.obstacles import coal_library
 from elbowroom.experiment.judge.poses import Posed, Poser
+from elbowroom.experiment.judge.stretches import stretches_of
 from elbowroom.planning.goal import natural_walk
 from elbowroom.planning.root.path import RootPath
 
 Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+_AT_ONCE = 32  # pairs, each in a stretch, that are looked at before the limit is asked again
 
 _SPEEDS = (0.0, 0.5, 1.1, 1.6, 2.2)  # m/s of the natural walk
 _PHASES = 24
 _CREASE = 0.02  # metres that belly and thighs may be deeper in each other: flesh gives where hips flex
 _BALLS = 4  # along an axis
 _ROW = (2.0 * np.arange(_BALLS) + 1.0) / _BALLS - 1.0  # their places, in half lengths from the middle
+
+
+@made_once
+def self_judge(humanoid: Humanoid) -> "SelfJudge":
+    """That of an avatar; it measures the natural walk once."""
+    return SelfJudge(humanoid)
 
 
 class SelfJudge:
@@ -49,28 +61,37 @@ class SelfJudge:
 
     def judge(self, posed: Posed, times: Floats, first: int, ledger: Ledger) -> None:
         """Enter what the parts do at N poses, whose numbers begin at `first`."""
-        placed = self._shapes.placed(posed)
-        bounds = self._bounds(placed)  # (N, P)
-        for at in np.argsort(bounds, axis=None):
-            pose, pair = (int(i) for i in np.unravel_index(at, bounds.shape))
-            if bounds[pose, pair] > ledger.limit:
-                return
+        still = Posed(posed.positions - posed.positions[:, :1], posed.rotations)  # about the hips: it moves less
+        placed, stretches = self._shapes.placed(still), stretches_of(still)
+        one, other = self._pairs.T
+        away, every = self._shapes.away(stretches), np.arange(len(one))
+        wide = self._bounds(placed, stretches.middles[:, None], every) - away[:, one] - away[:, other]  # (S, P)
+        for some, pairs in nearest_first(wide, lambda: ledger.depth_limit, _AT_ONCE):
+            rows = stretches.rows(some)
+            of_row = np.broadcast_to(pairs[:, None], rows.shape)
+            self._judge_near(placed, rows.ravel(), of_row.ravel(), times, first, ledger)
+
+    def _judge_near(self, placed: Placed, rows: Ints, pairs: Ints, times: Floats, first: int, ledger: Ledger) -> None:
+        """Enter what pairs (n,) do at poses `rows` (n,)."""
+        bounds = self._bounds(placed, rows, pairs)
+        for (some,) in nearest_first(bounds, lambda: ledger.depth_limit, 1):
+            pose, pair = int(rows[some[0]]), int(pairs[some[0]])
             one, other = (int(i) for i in self._pairs[pair])
             beyond = self._distance(placed, pose, one, other) - self._natural[pair]
             names = self._shapes.names[one], self._shapes.names[other]
             ledger.enter(first + pose, Nearness(*names, float(times[pose]), float(beyond)))
 
-    def _bounds(self, placed: Placed) -> Floats:
-        """A lower bound of every distance: that of the nearest two of the balls in rows round two axes."""
-        one, other = self._pairs.T
+    def _bounds(self, placed: Placed, poses: Ints, pairs: Ints) -> Floats:
+        """A lower bound of the distances of pairs at poses: that of the nearest two of the balls round two axes."""
+        one, other = self._pairs[pairs].T
         size = 0.5 * self._lengths / _BALLS + self._shapes.radii
-        rows = placed.middles[:, :, None] + _ROW[:, None] * placed.half_axes[:, :, None]  # (N, C, _BALLS, 3)
-        apart = np.full((len(rows), len(one)), np.inf)
-        for first in range(_BALLS):
-            for second in range(_BALLS):
-                between = rows[:, one, first] - rows[:, other, second]
-                np.minimum(apart, np.einsum("npi,npi->np", between, between), out=apart)
-        bounds: Floats = np.sqrt(apart) - size[one] - size[other] - self._natural
+        begins, ends = (
+            placed.middles[poses, each][..., None, :] + _ROW[:, None] * placed.half_axes[poses, each][..., None, :]
+            for each in (one, other)
+        )
+        between = begins[..., :, None, :] - ends[..., None, :, :]  # (..., _BALLS, _BALLS, 3)
+        apart = np.einsum("...i,...i->...", between, between).min(axis=(-1, -2))
+        bounds: Floats = np.sqrt(apart) - size[one] - size[other] - self._natural[pairs]
         return bounds
 
     def _distance(self, placed: Placed, pose: int, one: int, other: int) -> float:

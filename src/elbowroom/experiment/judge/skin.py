@@ -6,12 +6,14 @@ R (b - r) + p: in the model's axes every joint's rotation in T-pose is the ident
 """
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.fitting.body_mesh import body_mesh, loose_nodes
 from elbowroom.body.humanoid import Humanoid
+from elbowroom.body.made_once import made_once
 from elbowroom.experiment.judge.poses import Posed
 from elbowroom.formats.gltf import parse_gltf
 from elbowroom.formats.nodes import read_nodes
@@ -20,6 +22,21 @@ from elbowroom.formats.vrm import read_vrm
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
+
+
+class Carried(NamedTuple):
+    """Some vertices as sums of what joints do to them: one product of matrices poses them all."""
+
+    joints: Ints  # (j,) that carry any of them
+    shares: Floats  # (v, 4 j) of the axes of each joint, and of its place
+
+    def vertices(self, posed: Posed, rows: Ints) -> Floats:
+        """The vertices in the world, (n, v, 3), at some of N poses."""
+        turns, places = (each[rows[:, None], self.joints] for each in (posed.rotations, posed.positions))
+        frames = np.concatenate([np.swapaxes(turns, 2, 3), places[:, :, None]], axis=2)  # (n, j, 4, 3)
+        across = frames.reshape(len(rows), 4 * len(self.joints), 3).transpose(1, 0, 2)
+        carried = self.shares @ across.reshape(4 * len(self.joints), 3 * len(rows))
+        return np.ascontiguousarray(carried.reshape(len(self.shares), len(rows), 3).transpose(1, 0, 2))
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,7 +60,17 @@ class Skin:
                 total[:, at] += weights[at, None] * (carried + posed.positions[:, joint, None])
         return total
 
+    def carried(self, which: Ints) -> Carried:
+        """The vertices `which` (v,) as what their joints make of them; of few joints, or it is large."""
+        weights, offsets = self.weights[which], self.offsets[which]
+        present, places = np.unique(self.joints[which], return_inverse=True)
+        shares = np.zeros((len(which), len(present), 4))
+        of_joint = weights[..., None] * np.concatenate([offsets, np.ones_like(weights)[..., None]], axis=2)
+        np.add.at(shares, (np.arange(len(which))[:, None], places.reshape(weights.shape)), of_joint)
+        return Carried(present, shares.reshape(len(which), -1))
 
+
+@made_once
 def skin_of(humanoid: Humanoid) -> tuple[Skin | None, str]:
     """The skin of an avatar, or None and the reason why there is none to judge.
 

@@ -12,16 +12,16 @@ from elbowroom.experiment.judge.capsule_judge import CapsuleJudge
 from elbowroom.experiment.judge.ledger import Contact, Ledger, Nearness
 from elbowroom.experiment.judge.mesh_judge import MeshJudge
 from elbowroom.experiment.judge.motion import Moments, ShownMotion
-from elbowroom.experiment.judge.obstacles import surroundings_of
-from elbowroom.experiment.judge.poses import Poser
-from elbowroom.experiment.judge.self_judge import SelfJudge
+from elbowroom.experiment.judge.obstacles import Surroundings, surroundings_of
+from elbowroom.experiment.judge.poses import Posed, Poser
+from elbowroom.experiment.judge.self_judge import self_judge
 from elbowroom.experiment.judge.settings import JudgeSettings
 from elbowroom.experiment.judge.skin import skin_of
 from elbowroom.experiment.judge.smoothness import Smoothness, smoothness
 from elbowroom.experiment.judge.soles import Soles
 from elbowroom.world.scene import Scene
 
-_AT_ONCE = 240  # poses
+_AT_ONCE = 2400  # poses
 
 Progress = Callable[[float], object]  # is told how many seconds of the motion are judged
 
@@ -100,7 +100,7 @@ class Judging:
         self._surroundings, self._poser = surroundings_of(scene), Poser(humanoid)
         self._skin, self._note = skin_of(humanoid) if chosen.mesh else (None, "not asked for")
         self._of_capsules, self._of_mesh = Ledger(chosen.capsule_tolerance), Ledger(chosen.mesh_tolerance)
-        self._of_itself, self._itself = Ledger(chosen.self_tolerance), SelfJudge(humanoid)
+        self._of_itself, self._itself = Ledger(chosen.self_tolerance), self_judge(humanoid)
         self._soles = Soles(humanoid, self._poser, motion, floors=math.isinf(scene.obstacles.ground))
         around = [surroundings.obstacles for surroundings in self._surroundings]
         self._capsules, skin = [CapsuleJudge(humanoid, obstacles) for obstacles in around], self._skin
@@ -120,15 +120,25 @@ class Judging:
             yield float(some.times[-1])
 
     def _judge(self, some: Moments, first: int) -> None:
-        posed, times = self._poser.at(self._motion, some), self._motion.scene_times(some)
+        posed = self._poser.at(self._motion, some)
         body = self._soles.raised(posed, some)
         for around, capsules in zip(self._surroundings, self._capsules, strict=True):
-            capsules.judge(around.seen(body, times), some.times, first, self._of_capsules)
+            self._judge_near(around, capsules, (body, some, first), self._of_capsules)
         self._itself.judge(posed, some.times, first, self._of_itself)
         if self._skin is not None:
             surface = self._soles.raised(posed, some, self._skin)
             for around, mesh in zip(self._surroundings, self._mesh, strict=True):
-                mesh.judge(around.seen(surface, times), some.times, first, self._of_mesh)
+                self._judge_near(around, mesh, (surface, some, first), self._of_mesh)
+
+    def _judge_near(
+        self, around: Surroundings, judge: CapsuleJudge | MeshJudge, shown: tuple[Posed, Moments, int], ledger: Ledger
+    ) -> None:
+        """Have some poses judged, whose numbers begin somewhere: those at which what moves is near."""
+        posed, some, first = shown
+        times = self._motion.scene_times(some)
+        rows = around.near(posed, times, judge.reach + ledger.limit)
+        if rows.stop > rows.start:
+            judge.judge(around.seen(posed.part(rows), times[rows]), some.times[rows], first + rows.start, ledger)
 
     def verdict(self) -> Verdict:
         """On all that is judged by now."""
