@@ -21,7 +21,7 @@ from elbowroom.experiment.judge.smoothness import Smoothness, smoothness
 from elbowroom.experiment.judge.soles import Soles
 from elbowroom.world.scene import Scene
 
-_AT_ONCE = 2400  # poses
+_AT_ONCE = 1200  # poses
 
 Progress = Callable[[float], object]  # is told how many seconds of the motion are judged
 
