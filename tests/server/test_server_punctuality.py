@@ -86,6 +86,14 @@ def test_a_hand_that_turns_on_is_one_command_until_it_wants_something_else() -> 
     assert meter.answers.read()[0][-1] == 1
 
 
+def test_nothing_waits_across_a_new_beginning() -> None:
+    punctuality = Punctuality(meter := Meter())
+    punctuality.asked(1.0, AHEAD)
+    punctuality.begin()
+    heard_for(punctuality, 9.0, AHEAD)
+    assert meter.answers.read()[0][-1] == 0
+
+
 def test_what_is_never_answered_is_bounded() -> None:
     punctuality = Punctuality(meter := Meter())
     for n in range(10_000):

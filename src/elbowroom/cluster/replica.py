@@ -14,9 +14,9 @@ from elbowroom.cluster.keeper import SharedShelf
 from elbowroom.server.heap import settle, share_one_heap
 from elbowroom.server.kernels.warmup import first_steps, warm_up
 from elbowroom.server.serving import Front, listen, make_server
-from elbowroom.server.sessions.planning_thread import let_frames_go_first
+from elbowroom.server.sessions.planning_thread import give_way, let_frames_go_first
 from elbowroom.server.sessions.walk import WalkSettings
-from elbowroom.server.stores.library import Library
+from elbowroom.server.stores.library import Library, planning_threads
 from elbowroom.world.scene import Scene
 
 _ENDS_IN = 3.0  # seconds
@@ -39,7 +39,7 @@ class Replica:
         share_one_heap()
         let_frames_go_first()
         opened = _opened(pickle.loads(offer))
-        self._library = replace(opened, shelf=SharedShelf(keeper), shared=True)
+        self._library = replace(opened, planning=planning_threads(give_way), shelf=SharedShelf(keeper), shared=True)
         first_steps(self._library)
         self._socket = listen(str(ray.util.get_node_ip_address()), 0)  # type: ignore[no-untyped-call]
         self._server = make_server(self._library, self._socket, front=front)

@@ -7,6 +7,7 @@ from concurrent.futures import ThreadPoolExecutor
 from contextlib import nullcontext, suppress
 from dataclasses import dataclass
 from functools import partial
+from importlib.util import find_spec
 from statistics import median
 from typing import NamedTuple
 
@@ -57,11 +58,13 @@ class _User(NamedTuple):
 
 
 def measure_load(sessions: int, seconds: float, url: str | None = None) -> Load:
-    """So many users steer a server of its own, or that at an address, for so long.
+    """So many users steer servers of its own, or those at an address, for so long.
 
-    Raises `InputError` where there is no server.
+    Its own are what `serve` starts, or where there is no Ray for that, the one of `play`. Raises `InputError` where
+    there is no server.
     """
-    with started_server("d", dict(os.environ)) if url is None else nullcontext(url.rstrip("/")) as address:
+    own = partial(started_server, "d", dict(os.environ), many=find_spec("ray") is not None)
+    with own() if url is None else nullcontext(url.rstrip("/")) as address:
         try:
             wait_until_warm(address)
         except (OSError, ValueError):

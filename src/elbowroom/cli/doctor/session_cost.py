@@ -94,11 +94,16 @@ def _all_admitted(sessions: int) -> Iterator[None]:
 
 
 @contextmanager
-def started_server(scene: str, environment: dict[str, str]) -> Iterator[str]:
-    """The address of `elbowroom play` in a process of its own; raises `InputError` if it does not start."""
+def started_server(scene: str, environment: dict[str, str], *, many: bool = False) -> Iterator[str]:
+    """The address of `elbowroom play` in a process of its own, or of `serve`, which is for `many` users.
+
+    Raises `InputError` if it does not start.
+    """
     command = "import sys; from elbowroom.cli import main; sys.argv[0] = 'elbowroom'; main()"
-    call = [sys.executable, "-c", command, "play", "--port", "0", "--no-open", "--scene", scene]
-    with subprocess.Popen(call, stdout=subprocess.PIPE, text=True, env=environment) as server:
+    called = ["serve"] if many else ["play", "--no-open"]
+    call = [sys.executable, "-c", command, *called, "--port", "0", "--scene", scene]
+    told = subprocess.STDOUT if many else None  # where `serve` says its address
+    with subprocess.Popen(call, stdout=subprocess.PIPE, stderr=told, text=True, env=environment) as server:
         try:
             yield _url(server)
         finally:

@@ -1,6 +1,8 @@
 """Planning beside playback: a session's plans are made in a thread of their own, where kernels need no GIL."""
 
+import os
 import sys
+import threading
 import time
 from concurrent.futures import Executor, Future
 
@@ -9,6 +11,7 @@ from elbowroom.control.plans.wayfinder import Answer
 from elbowroom.server.sessions.meter import Meter
 
 _TURN = 0.001  # seconds
+_BEHIND = 5  # of niceness: a third of the share of a thread that shows frames
 
 
 def let_frames_go_first() -> None:
@@ -17,6 +20,16 @@ def let_frames_go_first() -> None:
     Frames wait for each of the threads in turn: behind three of them they would be late before they are begun.
     """
     sys.setswitchinterval(_TURN)
+
+
+def give_way() -> None:
+    """Have processors go to threads that show frames before the thread that calls this; on Linux, elsewhere nothing.
+
+    For a machine that serves many, whose frames are late where plans have the processors. Where a browser draws on the
+    same ones plans would wait for that.
+    """
+    if sys.platform == "linux":
+        os.setpriority(os.PRIO_PROCESS, threading.get_native_id(), _BEHIND)
 
 
 class PlanningThread:

@@ -32,6 +32,10 @@ class Punctuality:
         if not self._waiting or changed(self._waiting[-1][1], command):
             self._waiting.append((now, command))
 
+    def begin(self) -> None:
+        """Another walk is shown, or the same from its start: nothing waits for what it shows."""
+        self._waiting.clear()
+
     def heard(self, now: float, heeds: Callable[[Command], bool]) -> None:
         """The motion that is shown `heeds` some commands: they and what was asked for before them wait no longer."""
         late = next((place for place in range(len(self._waiting), 0, -1) if heeds(self._waiting[place - 1][1])), 0)

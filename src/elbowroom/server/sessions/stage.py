@@ -240,6 +240,7 @@ class Stage:
     def _jump(self) -> None:
         self._epoch = (self._epoch + 1) % 2**16
         self._told.clear()
+        self.punctuality.begin()
 
     def _flags(self) -> int:
         walk, bits = self.walk, pose_frame.FLAGS

@@ -1,7 +1,7 @@
 """What the sessions of one server share: the scenes, the avatars, and the choices that a session begins with."""
 
 import secrets
-from collections.abc import Hashable
+from collections.abc import Callable, Hashable
 from concurrent.futures import Executor, ThreadPoolExecutor
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -37,9 +37,9 @@ SENT = "place:"  # begins the names of scenes that pages have sent
 _MOST_PLACES = 8  # of these
 
 
-def _planning_threads() -> Executor:
-    """One more than cores: in more, plans that come at once would all come late."""
-    return ThreadPoolExecutor(usable_cores() + 1, "planning")
+def planning_threads(begin: Callable[[], object] | None = None) -> Executor:
+    """One more than cores: in more, plans that come at once would all come late. Each calls `begin` first."""
+    return ThreadPoolExecutor(usable_cores() + 1, "planning", begin)
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,7 +55,7 @@ class Library:
     clip: str = ""  # that a session begins with; "": it walks
     courses: Courses = field(default_factory=Courses)
     motions: MotionSet = field(default_factory=MotionSet)  # what avatars have learnt
-    planning: Executor = field(default_factory=_planning_threads)  # of all sessions
+    planning: Executor = field(default_factory=planning_threads)  # of all sessions
     run: Path | None = None  # a recording that the page opens with
     meter: Meter = field(default_factory=Meter)  # what all sessions come to
     shelf: Shelf = field(default_factory=OwnShelf)  # what must outlast a session
