@@ -26,6 +26,7 @@ from elbowroom.server.app import make_app
 from elbowroom.server.entrance import reception
 from elbowroom.server.entrance.guard import Guard, host_of, is_loopback
 from elbowroom.server.entrance.page_key import Sender
+from elbowroom.server.kernels.kernel_cache import kernels_in_memory
 from elbowroom.server.serving import listen, url_of
 from elbowroom.server.stores import avatar_store, uploads
 from elbowroom.server.stores.library import Library
@@ -92,7 +93,7 @@ def test_health_tells_what_the_process_costs(page: Page) -> None:
     assert health["sessions"] == 0
     assert health["warm"] is False  # nobody has warmed this one up
     assert 1e6 < health["ownBytes"] <= health["residentBytes"]
-    assert health["kernels"] > 0
+    assert health["kernels"] == kernels_in_memory()
     assert page.get("/api/health").json()["cpuSeconds"] >= health["cpuSeconds"]
 
 
