@@ -1,5 +1,6 @@
 """Under a beam among low boxes: what the exact planner finds leaves room for the bent knees too."""
 
+from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
@@ -147,9 +148,18 @@ def nowhere(keys: Floats, velocities: Floats) -> NDArray[np.bool_]:
     return np.zeros(len(keys) - 1, np.bool_)
 
 
+def crouched(
+    legs: LoweredLegs,
+    lowerings: Floats,
+    folds: Callable[[Floats, Floats], NDArray[np.bool_]] = nowhere,
+) -> Crouch:
+    """Standing on `legs` in postures of these `lowerings` (7, V)."""
+    return Crouch(legs, standing(), lambda: lowerings, folds, lambda: legs.shown(standing()))
+
+
 def test_who_stays_upright_is_not_looked_at() -> None:
     extra = np.zeros((7, 9), np.float32)
-    crouch = Crouch(wall_before_the_knees(), standing(), lambda: np.tile(np.linspace(0.0, 0.7, 9), (7, 1)), nowhere)
+    crouch = crouched(wall_before_the_knees(), np.tile(np.linspace(0.0, 0.7, 9), (7, 1)))
     assert not crouch.rules_out(*way(0.0), extra)
     assert not extra.any()
 
@@ -157,7 +167,7 @@ def test_who_stays_upright_is_not_looked_at() -> None:
 def test_nodes_whose_legs_touch_are_ruled_out_and_no_others() -> None:
     legs, lowerings = wall_before_the_knees(), np.linspace(0.0, 0.7, 9)
     extra = np.zeros((7, 9), np.float32)
-    crouch = Crouch(legs, standing(), lambda: np.tile(lowerings, (7, 1)), nowhere)
+    crouch = crouched(legs, np.tile(lowerings, (7, 1)))
     assert crouch.rules_out(*way(0.7), extra)
     touching = legs.clearances(np.zeros((9, 7)), lowerings) < 0.01
     assert 0 < touching.sum() < 8
@@ -168,7 +178,7 @@ def test_nodes_whose_legs_touch_are_ruled_out_and_no_others() -> None:
 def test_in_the_end_nobody_crouches() -> None:
     lowerings = np.tile(np.linspace(0.0, 0.7, 9), (7, 1))
     extra = np.zeros((7, 9), np.float32)
-    crouch = Crouch(wall_before_the_knees(), standing(), lambda: lowerings, nowhere)
+    crouch = crouched(wall_before_the_knees(), lowerings)
     closed = []
     for _ in range(ROUNDS - 1):
         assert crouch.rules_out(*way(0.7), extra)
@@ -190,8 +200,7 @@ def test_every_node_has_its_lowering() -> None:
 def test_who_would_lay_the_trunk_on_the_thighs_comes_up() -> None:
     lowerings = np.tile(np.linspace(0.0, 0.7, 9), (7, 1))
     extra = np.zeros((7, 9), np.float32)
-    free = LoweredLegs(MODEL, Obstacles())
-    crouch = Crouch(free, standing(), lambda: lowerings, lambda keys, _: keys[1:, COLUMN] > 0.55)
+    crouch = crouched(LoweredLegs(MODEL, Obstacles()), lowerings, lambda keys, _: keys[1:, COLUMN] > 0.55)
     assert crouch.rules_out(*way(0.7), extra)
     assert np.isinf(extra[3, -1])
     assert not np.isinf(extra[0]).any()

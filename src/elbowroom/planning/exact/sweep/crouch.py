@@ -38,15 +38,14 @@ class Crouch:
         path: RootPath,
         lowerings: Callable[[], Floats],
         folds: Callable[[Floats, Floats], Bools],
-        shown: Callable[[], Floats] | None = None,
+        shown: Callable[[], Floats],
     ) -> None:
         """`lowerings` gives those of all nodes of the search, (n+1, V).
 
         `folds` tells in which key intervals (n,) a way lays the trunk on the thighs; `shown` gives what `legs.shown`
-        has of the path, to whoever looks at it again and again.
+        has of the path, which is asked for again and again.
         """
-        self._legs, self._path, self._lowerings, self._folds = legs, path, lowerings, folds
-        self._shown = shown or (lambda: legs.shown(path))
+        self._legs, self._path, self._lowerings, self._folds, self._shown = legs, path, lowerings, folds, shown
         self._known: Floats | None = None
         self._round = 0
         self._margin: float | None = None
