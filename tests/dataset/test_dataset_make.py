@@ -28,6 +28,7 @@ from elbowroom.dataset.columns import COLUMNS, SCHEMA, SMPL_BONES
 from elbowroom.dataset.draw import draw
 from elbowroom.dataset.figures import Figures
 from elbowroom.dataset.hands import HANDS
+from elbowroom.dataset.in_use import in_use
 from elbowroom.dataset.make import make_dataset
 from elbowroom.dataset.manifest import Manifest
 from elbowroom.dataset.spec import STEERING, DatasetSpec
@@ -326,3 +327,17 @@ def test_without_a_spec_it_is_said_what_is_missing() -> None:
 def test_the_stock_spec_is_read_and_every_column_explained() -> None:
     assert DatasetSpec.load(STOCK_SPEC).walks == 1000
     assert all(column.about for column in COLUMNS)
+
+
+def test_a_folder_is_written_to_by_one_call_at_a_time(tmp_path: Path) -> None:
+    with in_use(tmp_path), pytest.raises(InputError, match="another call is writing"):
+        make_dataset(SPEC, tmp_path, Here())
+    assert not list(tmp_path.iterdir())
+
+
+def test_walks_that_are_there_are_never_thrown_away(tmp_path: Path) -> None:
+    make_dataset(SPEC, tmp_path, Here())
+    before = sorted(tmp_path.iterdir())
+    with pytest.raises(InputError, match="holds 4 walks, not 2"):
+        make_dataset(replace(SPEC, walks=2), tmp_path, Here())
+    assert sorted(tmp_path.iterdir()) == before

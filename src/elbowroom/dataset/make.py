@@ -5,6 +5,7 @@ from dataclasses import asdict, replace
 from pathlib import Path
 
 from elbowroom.dataset.card import write_card
+from elbowroom.dataset.in_use import in_use
 from elbowroom.dataset.manifest import Manifest, Written
 from elbowroom.dataset.row import Row
 from elbowroom.dataset.shards import Shard, shards_of, write_shard
@@ -23,12 +24,17 @@ def make_dataset(
 
     Interrupted and called again, or called with more walks, it ends with the same files, to the byte, as when it is
     made at once by the same version on one kind of processor. Raises `InputError` where the folder holds another
-    dataset or one made by another program.
+    dataset, one made by another program, or more walks, and where another call writes to it.
     """
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise InputError(f"{folder}: cannot be made ({error.strerror})") from None
+    with in_use(folder):
+        return _made(spec, folder, workers, progress)
+
+
+def _made(spec: DatasetSpec, folder: Path, workers: Workers, progress: Progress) -> Manifest:
     manifest = _continued(spec, folder)
     wanted = shards_of(spec.walks, spec.shard)
     there = {(written.first, written.end) for written in manifest.shards if (folder / written.file).exists()}
@@ -65,6 +71,9 @@ def _continued(spec: DatasetSpec, folder: Path) -> Manifest:
         raise InputError(
             f"{folder}: was made by another version or on another kind of processor; choose another folder"
         )
+    most = max((written.end for written in old.shards), default=0)
+    if most > spec.walks:
+        raise InputError(f"{folder}: holds {most} walks, not {spec.walks}; ask for more or choose another folder")
     return replace(old, spec=spec)
 
 
