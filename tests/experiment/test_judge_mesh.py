@@ -29,7 +29,7 @@ from elbowroom.formats.nodes import read_nodes
 from elbowroom.formats.triangles import triangle_mesh
 from elbowroom.geometry import quaternion
 from elbowroom.world.obstacles.obstacles import Obstacles
-from elbowroom.world.obstacles.shapes import Box, Mesh
+from elbowroom.world.obstacles.shapes import Box, Mesh, Sphere
 from elbowroom.world.scene import Scene
 from judged_bodies import T_POSE, gliding, random_boxes, random_postures, scene_with, upright
 from odd_bodies import Body, ring_body
@@ -297,6 +297,21 @@ def test_a_clean_mesh_tells_its_clearance() -> None:
     assert verdict.mesh.least.part == "head"
     assert verdict.mesh.least.clearance == pytest.approx(0.007, abs=1e-6)
     assert verdict.mesh.deepest == 0.0
+
+
+def test_a_triangle_without_area_touches_nothing() -> None:
+    """The other library takes one with two corners in one place to be in the middle of every ball."""
+    whole = ring_body()
+    tip = np.flatnonzero(np.array(whole.bones) == "head")[1]  # the octahedron's upper corner
+    collapsed = np.array([[tip, tip, tip - 1]])
+    body = Body(whole.points, whole.bones, np.concatenate([whole.triangles, collapsed]))
+    ball = Obstacles((Sphere(0.2),), whole.points[[tip]] + [0.0, 0.24, 0.0], quaternion.IDENTITY[None], ("ball",))
+    verdict = judge(ShownMotion.at_rate(*gliding(T_POSE, 2, speed=0.0)), odd_avatar(body=body), scene_with(ball))
+    assert verdict.triangles == len(body.triangles)
+    assert verdict.mesh is not None
+    assert verdict.mesh.touching == 0
+    assert verdict.mesh.least is not None
+    assert 0.0 < verdict.mesh.least.clearance < 0.1
 
 
 def test_without_a_mesh_only_capsules_are_judged() -> None:

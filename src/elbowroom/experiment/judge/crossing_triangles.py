@@ -1,4 +1,4 @@
-"""How deep triangles cross each other: the collision library tells that they do, but of two meshes not how far."""
+"""What the collision library does not tell of triangles: which are none, and how far two meshes cross each other."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,6 +20,16 @@ def crossing_depths(one: Floats, other: Floats) -> Floats:
     overlaps = np.where(told, np.minimum(ahead, behind), np.inf)
     depths: Floats = np.maximum(overlaps.min(axis=1), 0.0)
     return np.where(told.any(axis=1), depths, 0.0)
+
+
+def has_area(corners: Floats) -> NDArray[np.bool_]:
+    """Which triangles (..., 3, 3) are any, shape (...).
+
+    Of one with two corners in one place nothing is seen, and the library takes it to be in the middle of every ball.
+    """
+    sides = corners[..., 1:, :] - corners[..., :1, :]
+    seen: NDArray[np.bool_] = np.linalg.norm(np.cross(sides[..., 0, :], sides[..., 1, :]), axis=-1) > _FLAT
+    return seen
 
 
 def _axes(one: Floats, other: Floats) -> tuple[Floats, NDArray[np.bool_]]:

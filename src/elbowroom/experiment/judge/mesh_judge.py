@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from elbowroom.body.skeleton import Skeleton
 from elbowroom.experiment.judge.around import Around
-from elbowroom.experiment.judge.crossing_triangles import crossing_depths
+from elbowroom.experiment.judge.crossing_triangles import crossing_depths, has_area
 from elbowroom.experiment.judge.ledger import Ledger, Nearness
 from elbowroom.experiment.judge.nearest_first import nearest_first
 from elbowroom.experiment.judge.obstacles import Obstacle, coal_library
@@ -104,7 +104,10 @@ class MeshJudge:
             close = gaps[row] <= ledger.limit
             if not close.any():
                 return
-            distance = self._distance(points[row], patch.triangles[close], obstacle)
+            surface = patch.triangles[close & has_area(points[row, patch.triangles])]
+            if not len(surface):
+                continue
+            distance = self._distance(points[row], surface, obstacle)
             found = Nearness(self._regions[patch.joint], obstacle.name, float(moments.times[rows[row]]), distance)
             ledger.enter(moments.first + int(rows[row]), found)
 
