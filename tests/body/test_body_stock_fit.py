@@ -10,6 +10,7 @@ from hatchling.builders.wheel import WheelBuilder
 from elbowroom.body.capsules import Capsules
 from elbowroom.body.fitting.coverage import coverage
 from elbowroom.body.fitting.fit import Fit, fit_capsules
+from elbowroom.body.fitting.slim_capsule import Slim
 from elbowroom.body.fitting.stock_fit import fit_document, fit_of, stock_fit
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.loading import avatar_file as loading
@@ -51,6 +52,21 @@ def test_what_is_stored_holds_the_surface() -> None:
     assert found is not None
     assert found.share >= 0.995
     assert found.worst < 0.03  # of the pelvis in a deep crouch
+
+
+@pytest.mark.parametrize("fitted_anew", [False, True])
+def test_hands_are_held_as_closely_as_they_pass_things(fitted_anew: bool) -> None:
+    """Motions keep 5 mm from obstacles: a knuckle that stands farther out than that may be seen in one."""
+    humanoid, surface = load_with_surface(stock_avatar_path())
+    skeleton = humanoid.skeleton
+    capsules = fit_capsules(skeleton, surface.samples).capsules if fitted_anew else humanoid.capsules
+    for bone in ("leftHand", "rightHand"):
+        joint = skeleton.index(bone)
+        points = surface.samples.positions[surface.samples.joints == joint] - skeleton.positions[joint]
+        assert len(points) > 200
+        rows = np.flatnonzero(capsules.joints == joint)
+        hand = [Slim(capsules.starts[i], capsules.ends[i], float(capsules.radii[i])) for i in rows]
+        assert np.min([capsule.outside(points) for capsule in hand], axis=0).max() < 0.005
 
 
 def test_nothing_of_a_fit_is_lost_on_its_way_through_the_file() -> None:

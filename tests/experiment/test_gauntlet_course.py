@@ -30,9 +30,9 @@ PINNED = {
 }
 # The stock avatar: these change with its collision body too.
 PINNED_STOCK = {
-    (1, 0): "7d54775665ca72f32b6899c04a0dbbb414921e6313167e664faf6d324751fdd4",
-    (3, 1): "415cb5bde3414061ce66ac537e8e797a5f2247706a918aa257d94ebba4e8ef9a",
-    (5, 2): "20b0aeec9a086b01ad5498e61e5ffcc86d963054bbc1774b446cefb6db21789d",
+    (1, 0): "e60a515745397b5880962886097d3506a5ab3aa03eae0563b385d05b7481c461",
+    (3, 1): "94880954e59e12a192802d704eb6058eb549f75bf88324183a100f49d7afec26",
+    (5, 2): "99261a76f35042f597e1bab0aee85c72583c32adebe568f0b722573238f9bdb5",
 }
 
 

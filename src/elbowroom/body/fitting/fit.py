@@ -20,7 +20,7 @@ from elbowroom.body.skeleton import Skeleton
 Floats = NDArray[np.float64]
 
 MARGIN = 0.01  # metres that the surface may be outside the capsules
-_SLACK = 0.5 * MARGIN  # of this a fit makes use
+_ARM = ("UpperArm", "Forearm", "Hand")
 _SHOULDERS = "shoulders"  # from one shoulder joint to the other, as thick as the upper arms that hang there
 _WHOLE = ("leftUpperArm", "rightUpperArm")  # one capsule each: what is rooted in the trunk is told by its place
 
@@ -40,6 +40,17 @@ class FitSettings:
     thickest: float = 8.0
     capsules: int = 24  # at most, of the whole body
     worth_it: float = 0.85  # two capsules are taken for one if they have less than this part of its volume
+    margin: float = MARGIN
+    arm_margin: float = 0.5 * MARGIN  # the same for arms: nothing passes things as closely, and that is all they keep
+
+    @property
+    def slack(self) -> float:
+        """Metres of the margin that a fit makes use of."""
+        return 0.5 * self.margin
+
+    def of(self, part: str) -> "FitSettings":
+        """How closely one part of the body is followed."""
+        return replace(self, margin=self.arm_margin) if part.endswith(_ARM) else self
 
 
 class Fit(NamedTuple):
@@ -79,8 +90,8 @@ def fit_capsules(skeleton: Skeleton, samples: BodyPoints, settings: FitSettings 
             continue
         slight += [name] if _is_slight(first, own, settings) else []
         bare += [name] if len(own) < settings.fewest else []
-        few = len(own) < settings.fewest
-        shapes[name] = _Shapes(_grown(first, own, settings), None) if few else _fitted(own, first, name, settings)
+        few, close = len(own) < settings.fewest, settings.of(name)
+        shapes[name] = _Shapes(_grown(first, own, close), None) if few else _fitted(own, first, name, close)
     thickness = float(np.mean([shapes[f"{side}UpperArm"].one.radius for side in SIDES]))
     shapes[_SHOULDERS] = _Shapes(shapes[_SHOULDERS].one._replace(radius=thickness), None)
     slims = _chosen(shapes, settings.capsules)
@@ -116,7 +127,7 @@ def _fitted(own: Floats, first: Slim, name: str, settings: FitSettings) -> _Shap
     share = settings.hand_share if name.endswith("Hand") else settings.share
     loose = _clipped(slimmest(some, first.start, first.end, Wanted(share, 0.0)), low, high)
     loose = _clipped(loose._replace(radius=float(np.quantile(loose.outside(own) + loose.radius, share))), low, high)
-    left = own[loose.outside(own) > MARGIN]
+    left = own[loose.outside(own) > settings.margin]
     if len(left) <= (1.0 - settings.covered) * len(own):
         return _Shapes(loose, None)
     whole = _whole(own, first, low, high, settings)
@@ -130,8 +141,10 @@ def _fitted(own: Floats, first: Slim, name: str, settings: FitSettings) -> _Shap
 
 def _whole(own: Floats, first: Slim, low: float, high: float, settings: FitSettings) -> Slim:
     """The slimmest capsule round next to all samples."""
-    whole = _clipped(slimmest(_some(own, settings.most), first.start, first.end, Wanted(1.0, _SLACK)), low, high)
-    reach = float(np.quantile(whole.outside(own) + whole.radius, settings.held)) - _SLACK
+    whole = _clipped(
+        slimmest(_some(own, settings.most), first.start, first.end, Wanted(1.0, settings.slack)), low, high
+    )
+    reach = float(np.quantile(whole.outside(own) + whole.radius, settings.held)) - settings.slack
     return whole._replace(radius=float(np.clip(reach, low, high)))
 
 
@@ -150,8 +163,8 @@ def _halves(own: Floats, low: float, settings: FitSettings) -> list[tuple[Slim, 
 
 def _round(points: Floats, low: float, settings: FitSettings) -> Slim:
     """The slimmest capsule round all of some points."""
-    found = slimmest(_some(points, settings.most), points.min(axis=0), points.max(axis=0), Wanted(1.0, _SLACK))
-    reach = float(np.quantile(found.outside(points) + found.radius, settings.held)) - _SLACK
+    found = slimmest(_some(points, settings.most), points.min(axis=0), points.max(axis=0), Wanted(1.0, settings.slack))
+    reach = float(np.quantile(found.outside(points) + found.radius, settings.held)) - settings.slack
     return found._replace(radius=max(reach, 0.5 * low))
 
 
@@ -163,7 +176,7 @@ def _some(points: Floats, most: int) -> Floats:
 
 def _grown(first: Slim, own: Floats, settings: FitSettings) -> Slim:
     """A part of average proportions, thick enough for the few samples that it has."""
-    grown = first._replace(radius=first.radius + max([0.0, *(first.outside(own) - _SLACK)]))
+    grown = first._replace(radius=first.radius + max([0.0, *(first.outside(own) - settings.slack)]))
     return _clipped(grown, first.radius, settings.thickest * first.radius)
 
 

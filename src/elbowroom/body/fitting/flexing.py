@@ -1,4 +1,4 @@
-"""What skinned surfaces do at hips, knees and toes while walking: samples as a rigid capsule of one joint sees them."""
+"""What skinned surfaces do at hips, knees, toes and elbows: samples as a rigid capsule of one joint sees them."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,10 +10,13 @@ from elbowroom.geometry import quaternion
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
-# Degrees that thigh (forward), knee and toes of both legs are bent: standing, in mid-stride (left, right), crouching.
-_STANDING = ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
-_AHEAD, _BEHIND = (30.0, 12.0, 25.0), (-18.0, 35.0, 62.0)
-_CROUCHING = ((55.0, 90.0, 0.0), (55.0, 90.0, 0.0))
+# Degrees that thigh (forward), knee, toes and elbow of both sides are bent: standing, in mid-stride (left, right) with
+# arms that swing or fold, crouching.
+_STANDING = ((0.0, 0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 0.0))
+_AHEAD, _BEHIND = (30.0, 12.0, 25.0, 30.0), (-18.0, 35.0, 62.0, 70.0)
+_CROUCHING = ((55.0, 90.0, 0.0, 110.0), (55.0, 90.0, 0.0, 110.0))
+_X, _Y = 0, 1
+_BENT = {"UpperLeg": (_X, 0, -1.0), "LowerLeg": (_X, 1, 1.0), "Toes": (_X, 2, -1.0), "LowerArm": (_Y, 3, 1.0)}
 _POSES = (_STANDING, (_AHEAD, _BEHIND), (_BEHIND, _AHEAD), _CROUCHING)
 
 
@@ -51,7 +54,9 @@ def _posed(skeleton: Skeleton) -> tuple[Floats, Floats]:
 
 
 def _bent(bone: str) -> Floats:
-    """Local rotations (P, 4) of a bone in all poses; positive about X is forward and down."""
+    """Local rotations (P, 4) of a bone in all poses; positive about X is forward and down, about Y to the left."""
     side, part = (0 if bone.startswith("left") else 1), bone.removeprefix("left").removeprefix("right")
-    number, sign = {"UpperLeg": (0, -1.0), "LowerLeg": (1, 1.0), "Toes": (2, -1.0)}.get(part, (0, 0.0))
-    return quaternion.about_axis(0, sign * np.deg2rad([pose[side][number] for pose in _POSES]))
+    inward = -1.0 if side == 0 else 1.0
+    axis, number, sign = _BENT.get(part, (_X, 0, 0.0))
+    turned = sign * (inward if axis == _Y else 1.0)
+    return quaternion.about_axis(axis, turned * np.deg2rad([pose[side][number] for pose in _POSES]))

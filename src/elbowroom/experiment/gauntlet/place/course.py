@@ -34,7 +34,7 @@ from elbowroom.world.scene import Gate, Scene
 Floats = NDArray[np.float64]
 Progress = Callable[[str, float], None]
 
-_ATTEMPTS, _TRIES = 40, 60  # ways for a course, and places for a piece of furniture
+_ATTEMPTS, _TRIES = 160, 60  # ways for a course, and places for a piece of furniture
 _SHORTEST, _LONGEST = 3.0, 25.0  # metres of way
 _LEVEL = 0.05  # metres: the way is on the floor at height 0
 _FAR = 3.0  # metres from corner to corner, at most
