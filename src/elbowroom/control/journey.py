@@ -133,9 +133,10 @@ class Journey:
                 self._tries = 0
             self._nearest, self._waited, self._plans = left, 0.0, plans
             return
-        if self._waited < (_STUCK_PATIENCE if stuck and plans - self._plans >= _PLANS else _PATIENCE):
+        nearly = away < _NEARLY
+        if self._waited < (_STUCK_PATIENCE if stuck and (nearly or plans - self._plans >= _PLANS) else _PATIENCE):
             return
-        if away < _NEARLY:
+        if nearly:
             self.state = JourneyState.ARRIVED
             return
         self._plans = plans
