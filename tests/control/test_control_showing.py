@@ -36,8 +36,12 @@ def showing(shown: Playback, *, plain: bool = True, straight: bool = True) -> Sh
         shown_clearance=lambda *_: 1.0,
         leaves_room=lambda _: True,
         free_between=lambda _: straight,
+        shown_axes=lambda *_: None,
     )
-    around: Any = SimpleNamespace(check=check, feet=SimpleNamespace(standing=lambda root: root), spare=0.0)
+    own_body = SimpleNamespace(free_between=lambda *_: True)
+    around: Any = SimpleNamespace(
+        check=check, own_body=own_body, feet=SimpleNamespace(standing=lambda root: root), spare=0.0
+    )
     made = Showing(around, np.zeros(SHOWN), assist=True)
     made._show(shown, 1.0)
     return made

@@ -14,7 +14,7 @@ from elbowroom.body.dof import ARMS, columns_of, limits
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.pose.kinematics import BodyModel, body_model
 from elbowroom.clips.motion_set import MotionSet
-from elbowroom.control.feet.following import ArmsAndLegs, arm_gaps
+from elbowroom.control.feet.following import BesideLegs, arm_gaps
 from elbowroom.planning.goal import natural_walk
 from elbowroom.planning.model.self_pairs import self_pairs
 from elbowroom.planning.shared import Shared
@@ -25,7 +25,8 @@ Floats32 = NDArray[np.float32]
 _NEAR, _LEAST_GAP = 0.010, 0.004  # metres: an arm that would be nearer makes way, and keeps some millimetres
 _BACK = 0.1  # seconds: time constant with which an arm that has made way comes back
 _BARELY = 0.0005  # metres that it keeps where it has no room for more
-_ROUNDS, _LEAST = 3, 0.3  # of the way to the hand: what spreading an arm opens at least
+_ROUNDS, _MOST_ROUNDS = 3, 9  # in which it is found how far: these, and more where an arm is still in a leg then
+_LEAST = 0.3  # of the way to the hand: what spreading an arm opens at least
 _UNFELT = 1e-4  # radians
 _ABDUCTION = 1  # its place in an arm's components
 
@@ -42,7 +43,7 @@ class ArmsBesideLegs:
         legs = np.isin(pairs.first, model.roots.indices) | np.isin(pairs.second, model.roots.indices)
         chosen = (first | second) & legs
         right = np.isin(pairs.first, arms[1]) | np.isin(pairs.second, arms[1])
-        self.pairs = ArmsAndLegs(
+        self.pairs = BesideLegs(
             pairs.first[chosen], pairs.second[chosen], right[chosen].astype(np.int64), pairs.limits[chosen]
         )
         self._columns = [columns_of(arm).start + _ABDUCTION for arm in ARMS]
@@ -86,7 +87,9 @@ class ArmsBesideLegs:
         """The upper body with arms spread until the gaps of both to the legs, (2,) metres, are as wide as `wanted`."""
         angles, slopes = np.zeros(len(ARMS)), np.full(len(ARMS), self._reach)
         spread, found = upper, gaps
-        for _ in range(_ROUNDS):
+        for done in range(_MOST_ROUNDS):
+            if done >= _ROUNDS and found.min() >= _BARELY:
+                break
             angles = np.clip(angles + (wanted - found) / slopes, 0.0, np.inf)
             spread = upper.copy()
             spread[self._columns] = np.maximum(

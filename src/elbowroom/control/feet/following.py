@@ -27,18 +27,18 @@ Floats32 = NDArray[np.float32]
 Indices = NDArray[np.int64]
 
 _TWIST, _HEAD_TURN = (columns_of(group).start + 1 for group in (DofGroup.WAIST, DofGroup.HEAD))
-_ARMS = plain(2)
+_ARMS, _TRUNK = plain(2), plain(1)
 # How feet follow: they step to where the root is to come; they glide as the walking cycle swings them, and stay where
 # they stand; they glide as the cycle has them, standing or not.
 STEPS, HOLDS, GLIDES = range(3)
 
 
-class ArmsAndLegs(NamedTuple):
-    """P pairs of capsules, one of an arm and one of a leg."""
+class BesideLegs(NamedTuple):
+    """P pairs of capsules, one of an arm or the trunk and one of a leg."""
 
     first: Indices  # (P,)
     second: Indices  # (P,)
-    arms: Indices  # (P,) 0 left, 1 right
+    kinds: Indices  # (P,) 0 left arm, 1 right arm, or all 0: the trunk
     allowed: Floats32  # (P,) metres: as near the axes may come
 
 
@@ -49,7 +49,8 @@ class Follower(NamedTuple):
     shown: ShownBody
     feet: Stepper
     body: Body
-    pairs: ArmsAndLegs
+    arms: BesideLegs
+    trunk: BesideLegs
     under: Underfoot  # what it stands on
 
 
@@ -59,16 +60,17 @@ class Followed(NamedTuple):
     root: Floats  # (SHOWN,) with feet and carriage
     axes: Floats32  # (C, 6, 1) of its capsules, as seen from the root's place, feet as high as they are held
     gaps: Floats32  # (2, 1) how much nearer the left and the right arm may come to the legs, metres
+    trunk: float  # how much nearer the trunk may come to them, metres
 
 
 @inner_exact_kernel
-def _arm_gaps(axes: Floats32, pairs: ArmsAndLegs) -> Floats32:
+def _arm_gaps(axes: Floats32, pairs: BesideLegs) -> Floats32:
     """How much nearer the left and the right arm of a body (C, 6, 1) may come to its legs, metres (2, 1)."""
-    return pair_clearances(axes, pairs.first, pairs.second, pairs.arms, pairs.allowed, _ARMS)
+    return pair_clearances(axes, pairs.first, pairs.second, pairs.kinds, pairs.allowed, _ARMS)
 
 
 @brief_exact_kernel
-def arm_gaps(body: WholeBody, root: Floats, upper: Floats, pairs: ArmsAndLegs) -> Floats32:
+def arm_gaps(body: WholeBody, root: Floats, upper: Floats, pairs: BesideLegs) -> Floats32:
     """`_arm_gaps` of a body at a root with feet (WITH_FEET or SHOWN,), with an upper body (LOCAL,)."""
     q, here = np.zeros((1, DOF)), root.copy().reshape((1, len(root)))
     q[0, DOF - LOCAL :] = upper
@@ -79,7 +81,7 @@ def arm_gaps(body: WholeBody, root: Floats, upper: Floats, pairs: ArmsAndLegs) -
 @brief_exact_kernel
 def followed(
     who: Follower, before: Floats, root: Floats, upper: Floats, coming: Floats, dt: float, room: float, how: int
-) -> tuple[Floats, Floats32, Floats32]:
+) -> tuple[Floats, Floats32, Floats32, float]:
     """How a root state (7 or more,) with an upper body (LOCAL,) is shown `dt` seconds after `before` (SHOWN,).
 
     As `Followed`. Feet step to where the root is to come, or glide into the walking cycle, `how` says which; that is
@@ -97,6 +99,7 @@ def followed(
     q[0, DOF - LOCAL :] = upper
     near[0, :2] = 0.0
     axes = posed_capsules(who.shown.whole, q, near)
-    gaps = _arm_gaps(axes, who.pairs)
+    gaps, trunk = _arm_gaps(axes, who.arms), who.trunk
+    folded = pair_clearances(axes, trunk.first, trunk.second, trunk.kinds, trunk.allowed, _TRUNK)
     lift_feet(who.shown, q, near, axes)
-    return row, axes, gaps
+    return row, axes, gaps, float(folded[0, 0])

@@ -29,6 +29,7 @@ from elbowroom.control.feet.feet_ahead import glides_ahead, steps_ahead
 from elbowroom.control.feet.following import GLIDES, HOLDS, STEPS, Followed, Follower, followed
 from elbowroom.control.feet.posing import Posing
 from elbowroom.control.feet.raised import raised
+from elbowroom.control.feet.trunk_over_legs import trunk_over_legs
 from elbowroom.control.key_frame_queue import Playback
 
 Floats = NDArray[np.float64]
@@ -38,6 +39,7 @@ _ROOM = 0.10  # metres about the legs in which feet step as they like
 _ASKED = 0.01  # metres: more room about legs is not told apart
 CLEAR = 0.004  # metres about the legs that have to stay, where there are less, as far ahead as is known
 _FORESEEN = 0.75  # seconds that are looked ahead
+_FOLDED = 0.02  # metres from trunk to thighs, beyond what they may come near: with more it is not looked ahead
 _SAME = 1e-9  # metres and radians
 _STRAIN = 0.3  # half leg lengths that hips come down, beyond the stride, to a foot that waits
 _TWIST, _HEAD_TURN = (columns_of(group).start + 1 for group in (DofGroup.WAIST, DofGroup.HEAD))
@@ -54,9 +56,10 @@ class Stepping:
         model = body_model(humanoid)
         self._gait, self._own, self._footing = model.gait, motions.own_steps, soles.footing
         self._body = body_of(model.gait, motions.style.manner, motions.own_stride(model.gait))
-        self._arms = arms_beside_legs(humanoid, motions)
+        self._arms, self._trunk = arms_beside_legs(humanoid, motions), trunk_over_legs(humanoid, motions)
         feet = Stepper(model.gait.legs, model.gait.scale, self._own)
-        self._follower = Follower(soles.body, feet, self._body, self._arms.pairs, soles.footing.underfoot)
+        pairs, under = (self._arms.pairs, self._trunk.pairs), soles.footing.underfoot
+        self._follower = Follower(soles.body, feet, self._body, *pairs, under)
 
     def standing(self, root: Floats) -> Floats:
         """A root state (ROOT_STATE,) with feet beside each other, carried as planned, (SHOWN,)."""
@@ -107,6 +110,8 @@ class Stepping:
         around = moment.look(after.root, posed.upper, after.axes)
         if around.room < _ROOM and not (around.lasts and self._stays_clear(moment, after.root, posed.upper)):
             after = self._glided(it, lasts=around.lasts)
+        if after.trunk < _FOLDED and self._comes_into_trunk(moment, after.root, posed.upper):
+            after = it.made(GLIDES)
         upper = self._arms.apart(after.root, posed.upper, after.gaps)
         made = moment.shown.upper - moment.meant
         return Playback(after.root, self._arms.coming_back(upper, posed.upper, made, moment.dt), posed.upper_velocity)
@@ -114,9 +119,9 @@ class Stepping:
     def under(self, moment: Moment, played: Sequence[tuple[Playback, Floats]]) -> Iterator[tuple[Playback, Floats]]:
         """Poses that could be shown next, each with its stance (3,), on feet that follow on what is shown.
 
-        Where legs have room, and will have some, feet step to where the root is to come, else they glide to where they
-        were planned, and arms make way for the legs. If that touches, hips are as planned; then feet glide and arms go
-        as planned; or feet step, or wait. Last come those with an arm too deep in a leg.
+        Where legs have room, and will have some, from the trunk too, feet step to where the root is to come, else they
+        glide to where they were planned, and arms make way for the legs. If that touches, hips are as planned; then
+        feet glide and arms go as planned; or feet step, or wait. Last come those with an arm too deep in a leg.
         """
         in_legs, told = list[tuple[Playback, Floats]](), list[Playback]()
         for way, stance, clear in self._ways_under(moment, played):
@@ -238,6 +243,11 @@ class Stepping:
         """A root state (ROOT_STATE or more,) with what the feet of the walking cycle stand on (ROOT_STATE,)."""
         stood: Floats = self._footing.stood(root[None, :ROOT_STATE])[0][0]
         return stood
+
+    def _comes_into_trunk(self, moment: Moment, root: Floats, upper: Floats) -> bool:
+        """Whether a thigh on feet that step on from `root` comes too near to the trunk, as far ahead as is known."""
+        rows = steps_ahead(self._gait, root[:WITH_FEET], moment.ahead, _FORESEEN, self._own, self._follower.under)
+        return self._trunk.room(rows, upper) < CLEAR
 
     def _stays_clear(self, moment: Moment, root: Floats, upper: Floats) -> bool:
         """Whether legs on feet that step on from `root` stay clear of what is near, as far ahead as is known."""

@@ -9,6 +9,7 @@ from elbowroom.control.plans.planners import Planners
 from elbowroom.control.plans.wayfinder import Wayfinder
 from elbowroom.control.settings import ControlSettings
 from elbowroom.control.shown.body_check import BodyCheck
+from elbowroom.control.shown.own_body_check import own_body_check
 from elbowroom.planning.navigation.navigator import Navigator
 from elbowroom.world.scene import Scene
 
@@ -26,6 +27,7 @@ class PlanningScene:
         self._humanoid, self.scene, self.spare = humanoid, scene, spare
         self.free_map = scene.free_map
         self.check = BodyCheck(humanoid, scene)
+        self.own_body = own_body_check(humanoid, motions)
         self.feet = Stepping(humanoid, motions, self.check.soles)
         self.planners = Planners(settings.planner, humanoid, scene, motions)
         self.wayfinder = Wayfinder(settings, self.check, motions, self.planners)

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from elbowroom.body.dof import DOF, LOCAL, LOWERING, DofGroup
 from elbowroom.body.humanoid import Humanoid
-from elbowroom.body.pose.kinematics import body_model
+from elbowroom.body.pose.kinematics import body_model, posture_capsules
 from elbowroom.control.feet.above_soles import AboveSoles
 from elbowroom.control.feet.turned_legs import turned_at, turned_legs
 from elbowroom.control.others.neighbour import Neighbour
@@ -131,6 +131,14 @@ class BodyCheck:
     def axes(self, root: Floats, upper: Floats) -> Floats32:
         """The capsules' axes (C, 6, 1) as seen from the root's place."""
         return self._pose(root, upper).axes
+
+    def shown_axes(self, root: Floats, upper: Floats) -> Floats32:
+        """The same with feet where they are shown, and not as high as they are held against obstacles."""
+        if self.footing.plain:
+            return self.axes(root, upper)
+        near = root.copy()
+        near[:2] = 0.0
+        return posture_capsules(self.model, configuration(near, upper), near)
 
     def room_of_legs(self, root: Floats, upper: Floats, time: float, axes: Floats32 | None = None) -> float:
         """Metres from the legs to the nearest obstacle, as `shown_clearance` of the whole body.

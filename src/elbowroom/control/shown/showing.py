@@ -128,7 +128,8 @@ class Showing:
             return
         posed = before.pose._replace(upper_velocity=np.zeros_like(before.pose.upper))
         clearance = self._clearance_of(posed.root, posed.upper)
-        if self._around.check.accompanied and not self._is_free(posed, clearance):
+        touches = self._around.check.accompanied and not self._touches_nothing(posed, clearance)
+        if touches or not self._keeps_out_of_itself(posed):
             self._retracing.give_up()
             return
         self._retracing.went()
@@ -228,15 +229,30 @@ class Showing:
         return self._around.check.shown_clearance(root, upper, self._now)
 
     def _is_free(self, posed: Playback, clearance: float) -> bool:
-        """Whether the pose can be shown: it touches nothing, nor does the way to it from the pose that is shown."""
-        check, shown = self._around.check, self._pose
+        """Whether the pose can be shown: neither it nor the way to it touches anything, or is in itself."""
+        return self._touches_nothing(posed, clearance) and self._keeps_out_of_itself(posed)
+
+    def _touches_nothing(self, posed: Playback, clearance: float) -> bool:
+        """Whether a pose touches nothing that stands or moves about it, nor the way to it from what is shown."""
+        check = self._around.check
         if check.restless and self._clearance < 0.0 and clearance >= self._clearance:
             return True  # away from what has come upon it
         spare = 0.0 if self.holding.active else min(self._around.spare, self._clearance)
         if clearance < max(spare, 0.0) or not self._leaves_knees_room(posed):
             return False
-        frames = Frames((shown.root, posed.root), (shown.upper, posed.upper), (self._posed_at, self._now))
+        frames = self._frames_to(posed)
         return check.leaves_room(frames) and check.free_between(frames)
+
+    def _keeps_out_of_itself(self, posed: Playback) -> bool:
+        """Whether no part of the body comes deeper into another than it may, from the pose that is shown on."""
+        check, shown = self._around.check, self._pose
+        axes = check.shown_axes(shown.root, shown.upper), check.shown_axes(posed.root, posed.upper)
+        return self._around.own_body.free_between(self._frames_to(posed), axes)
+
+    def _frames_to(self, posed: Playback) -> Frames:
+        """What is shown, and the pose that comes next."""
+        shown = self._pose
+        return Frames((shown.root, posed.root), (shown.upper, posed.upper), (self._posed_at, self._now))
 
     def _leaves_knees_room(self, posed: Playback) -> bool:
         """Whether skin that may be outside of its capsules has room about bent knees, or as much as there was.
