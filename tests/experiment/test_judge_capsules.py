@@ -8,6 +8,7 @@ from elbowroom.body.fitting.proportions import proportional_humanoid
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.pose.kinematics import body_model, posture_capsules
 from elbowroom.experiment.judge.capsule_judge import CapsuleJudge
+from elbowroom.experiment.judge.case import Case
 from elbowroom.experiment.judge.ledger import Ledger
 from elbowroom.experiment.judge.motion import ShownMotion
 from elbowroom.experiment.judge.obstacles import obstacles_of
@@ -107,7 +108,7 @@ def test_nothing_is_missed(seed: int) -> None:
     motion, ledger = ShownMotion.at_rate(q, roots), Ledger(1e-5)
     moments = motion.moments(60.0)
     judges = CapsuleJudge(BODY, obstacles_of(scene_with(boxes)))
-    judges.judge(Poser(BODY).at(motion, moments), moments.times, 0, ledger)
+    judges.judge(Case(Poser(BODY).at(motion, moments), moments.times, 0, ledger))
     assert ledger.least is not None
     assert ledger.least.clearance == pytest.approx(distances.min(), abs=1e-5)
     clear, touching = distances.min(axis=(0, 2)) > 0.0, distances.min(axis=(0, 2)) < -2e-5

@@ -13,6 +13,7 @@ from elbowroom.body.fitting.proportions import proportional_humanoid
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.loading.avatar_file import load_humanoid, load_humanoid_bytes
 from elbowroom.body.loading.settings import LoadSettings
+from elbowroom.experiment.judge.case import Case
 from elbowroom.experiment.judge.crossing_triangles import crossing_depths
 from elbowroom.experiment.judge.ledger import Ledger
 from elbowroom.experiment.judge.mesh_judge import MeshJudge, region_of
@@ -212,7 +213,7 @@ def test_nothing_is_missed(seed: int, place: Callable[[np.random.Generator], Obs
     q, roots = random_postures(rng, 4)
     scene = scene_with(place(rng))
     posed, ledger = poses(STOCK, q, roots), Ledger(1e-5)
-    MeshJudge(SKIN, STOCK.skeleton, obstacles_of(scene)).judge(posed, np.arange(4) / 60, 0, ledger)
+    MeshJudge(SKIN, STOCK.skeleton, obstacles_of(scene)).judge(Case(posed, np.arange(4) / 60, 0, ledger))
     vertices, obstacles = SKIN.vertices(posed, np.arange(len(SKIN.joints))), whole_obstacles(scene)
     whole = np.array([min(whole_distance(points, *obstacle) for obstacle in obstacles) for points in vertices])
     assert ledger.least is not None

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 from elbowroom.body.dof import DOF, DofGroup
 from elbowroom.body.fitting.proportions import proportional_humanoid
 from elbowroom.body.pose.kinematics import body_model
+from elbowroom.experiment.judge.case import Case
 from elbowroom.experiment.judge.ledger import Ledger
 from elbowroom.experiment.judge.motion import ShownMotion
 from elbowroom.experiment.judge.poses import Poser
@@ -77,7 +78,7 @@ def test_judge_and_planner_agree_pose_by_pose() -> None:
     agreed = 0
     for n in range(count):
         ledger = Ledger(0.0)
-        JUDGE.judge(type(posed)(posed.positions[n : n + 1], posed.rotations[n : n + 1]), np.zeros(1), n, ledger)
+        JUDGE.judge(Case(posed.part(slice(n, n + 1)), np.zeros(1), n, ledger))
         assert ledger.least is not None
         beyond = ledger.least.clearance + OVERLAP
         if min(beyond, float(opinions[n])) < OVERLAP:  # farther apart, the planner measures from its own rim

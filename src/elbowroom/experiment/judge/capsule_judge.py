@@ -9,10 +9,9 @@ from numpy.typing import NDArray
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.experiment.judge.around import Around
 from elbowroom.experiment.judge.capsule_shapes import CapsuleShapes, Placed
-from elbowroom.experiment.judge.ledger import Ledger, Nearness
+from elbowroom.experiment.judge.case import Case
 from elbowroom.experiment.judge.nearest_first import nearest_first
 from elbowroom.experiment.judge.obstacles import Obstacle, coal_library
-from elbowroom.experiment.judge.poses import Posed
 from elbowroom.experiment.judge.stretches import stretches_of
 
 Floats = NDArray[np.float64]
@@ -34,32 +33,29 @@ class CapsuleJudge:
         """Metres that anything of the body is away from the joint that carries it, at most."""
         return self._shapes.reach
 
-    def judge(self, posed: Posed, times: Floats, first: int, ledger: Ledger) -> None:
-        """Enter what the capsules do at N poses, whose numbers begin at `first`."""
-        placed, stretches = self._shapes.placed(posed), stretches_of(posed)
+    def judge(self, case: Case) -> None:
+        """Enter what the capsules do."""
+        placed, stretches = self._shapes.placed(case.posed), stretches_of(case.posed)
         middle, away = placed.at(stretches.middles), self._shapes.away(stretches)
         reach = np.abs(middle.half_axes) + (self._shapes.radii + away)[..., None]
         low, high = (middle.middles - reach).min(axis=(0, 1)), (middle.middles + reach).max(axis=(0, 1))
         for least, obstacle in self._around.nearest_first(low, high):
-            if least > ledger.limit:
+            if least > case.ledger.limit:
                 return
             wide = self._bounds(middle.middles, middle.half_axes, obstacle) - self._shapes.radii - away
-            for some, capsules in nearest_first(wide, lambda: ledger.limit, _AT_ONCE):
+            for some, capsules in nearest_first(wide, lambda: case.ledger.limit, _AT_ONCE):
                 rows = stretches.rows(some)
                 every = np.broadcast_to(capsules[:, None], rows.shape)
-                self._judge_near(placed, rows.ravel(), every.ravel(), obstacle, times, first, ledger)
+                self._judge_near(placed, rows.ravel(), every.ravel(), obstacle, case)
 
-    def _judge_near(
-        self, placed: Placed, rows: Ints, capsules: Ints, obstacle: Obstacle, times: Floats, first: int, ledger: Ledger
-    ) -> None:
+    def _judge_near(self, placed: Placed, rows: Ints, capsules: Ints, obstacle: Obstacle, case: Case) -> None:
         """Enter what capsules (n,) do to an obstacle at poses `rows` (n,)."""
         axes = placed.middles[rows, capsules], placed.half_axes[rows, capsules]
         bounds = self._bounds(*axes, obstacle) - self._shapes.radii[capsules]
-        for (some,) in nearest_first(bounds, lambda: ledger.limit, 1):
+        for (some,) in nearest_first(bounds, lambda: case.ledger.limit, 1):
             pose, capsule = int(rows[some[0]]), int(capsules[some[0]])
             distance = self._distance(capsule, self._shapes.place(placed, pose, capsule), obstacle)
-            found = Nearness(self._shapes.names[capsule], obstacle.name, float(times[pose]), distance)
-            ledger.enter(first + pose, found)
+            case.enter(pose, self._shapes.names[capsule], obstacle.name, distance)
 
     def _bounds(self, middles: Floats, half_axes: Floats, obstacle: Obstacle) -> Floats:
         """A lower bound (...) of the distances of axes (..., 3): that of the boxes round axis and obstacle."""

@@ -8,13 +8,12 @@ from numpy.typing import NDArray
 
 from elbowroom.body.skeleton import Skeleton
 from elbowroom.experiment.judge.around import Around
+from elbowroom.experiment.judge.case import Case
 from elbowroom.experiment.judge.crossing_triangles import crossing_depths, has_area
-from elbowroom.experiment.judge.ledger import Ledger, Nearness
 from elbowroom.experiment.judge.nearest_first import nearest_first
 from elbowroom.experiment.judge.obstacles import Obstacle, coal_library
 from elbowroom.experiment.judge.patches import Patch, patches_of
 from elbowroom.experiment.judge.pieces import MOST, Piece
-from elbowroom.experiment.judge.poses import Posed
 from elbowroom.experiment.judge.skin import Skin
 from elbowroom.experiment.judge.stretches import Stretches, stretches_of
 
@@ -25,12 +24,12 @@ _KNOWN = 50_000  # patches, each in a pose, that are kept: some 100 MB
 _AT_ONCE = 24  # poses at which a patch is looked at, the nearest first: those after them may be too far then
 
 
-class _Moments:
-    """Some poses, and the skin in them: a patch is posed once in each, when it is first asked for."""
+class _Surface:
+    """The skin in the poses of a case: a patch is posed once in each, when it is first asked for."""
 
-    def __init__(self, posed: Posed, times: Floats, first: int) -> None:
-        self.posed, self.times, self.first = posed, times, first
-        self.stretches: Stretches = stretches_of(posed)
+    def __init__(self, case: Case) -> None:
+        self.case, self.posed, self.ledger = case, case.posed, case.ledger
+        self.stretches: Stretches = stretches_of(case.posed)
         self._known = dict[tuple[int, int], Floats]()  # by patch and pose
 
     def points(self, number: int, patch: Patch, rows: Ints) -> Floats:
@@ -61,55 +60,52 @@ class MeshJudge:
         """Metres that anything of the skin is away from the nearest of its joints, at most."""
         return self._patches.reach
 
-    def judge(self, posed: Posed, times: Floats, first: int, ledger: Ledger) -> None:
-        """Enter what the surface does at N poses, whose numbers begin at `first`."""
-        moments = _Moments(posed, times, first)
-        low, high = self._patches.spans(posed, moments.stretches)  # (S, P, 3)
+    def judge(self, case: Case) -> None:
+        """Enter what the surface does."""
+        surface = _Surface(case)
+        low, high = self._patches.spans(case.posed, surface.stretches)  # (S, P, 3)
         lowest, highest = low.min(axis=1), high.max(axis=1)
         for least, obstacle in self._around.nearest_first(lowest.min(axis=0), highest.max(axis=0)):
-            if least > ledger.limit:
+            if least > case.ledger.limit:
                 return
-            some = np.flatnonzero(obstacle.world_distance(lowest, highest) <= ledger.limit)
+            some = np.flatnonzero(obstacle.world_distance(lowest, highest) <= case.ledger.limit)
             if len(some):
-                self._judge_obstacle(some, obstacle.world_distance(low[some], high[some]), moments, obstacle, ledger)
+                self._judge_obstacle(some, obstacle.world_distance(low[some], high[some]), surface, obstacle)
 
-    def _judge_obstacle(
-        self, some: Ints, bounds: Floats, moments: _Moments, obstacle: Obstacle, ledger: Ledger
-    ) -> None:
+    def _judge_obstacle(self, some: Ints, bounds: Floats, surface: _Surface, obstacle: Obstacle) -> None:
         """Enter what the surface does to an obstacle in stretches `some` (s,); none is nearer than `bounds` (s, P)."""
-        stretches = moments.stretches
+        stretches, ledger = surface.stretches, surface.ledger
         if ledger.least is None:  # one pose first: from then on the ledger has a limit
             nearest, number = np.unravel_index(bounds.argmin(), bounds.shape)
-            self._judge_patch(int(number), stretches.middles[some[[nearest]]], moments, obstacle, ledger)
+            self._judge_patch(int(number), stretches.middles[some[[nearest]]], surface, obstacle)
         near, nearest = bounds <= ledger.limit, bounds.min(axis=0)
         numbers = np.flatnonzero(near.any(axis=0))
         for number in numbers[np.argsort(nearest[numbers], kind="stable")].tolist():
             if nearest[number] > ledger.limit:
                 return
-            self._judge_patch(number, np.unique(stretches.rows(some[near[:, number]])), moments, obstacle, ledger)
+            self._judge_patch(number, np.unique(stretches.rows(some[near[:, number]])), surface, obstacle)
 
-    def _judge_patch(self, number: int, rows: Ints, moments: _Moments, obstacle: Obstacle, ledger: Ledger) -> None:
+    def _judge_patch(self, number: int, rows: Ints, surface: _Surface, obstacle: Obstacle) -> None:
         """Enter what a patch does to an obstacle at those poses `rows` (n,) at which it may be near."""
-        bounds = self._patches.bounds(number, moments.posed, rows, obstacle)
-        for (some,) in nearest_first(bounds, lambda: ledger.limit, _AT_ONCE):
-            self._judge_triangles(number, rows[some], moments, obstacle, ledger)
+        bounds = self._patches.bounds(number, surface.posed, rows, obstacle)
+        for (some,) in nearest_first(bounds, lambda: surface.ledger.limit, _AT_ONCE):
+            self._judge_triangles(number, rows[some], surface, obstacle)
 
-    def _judge_triangles(self, number: int, rows: Ints, moments: _Moments, obstacle: Obstacle, ledger: Ledger) -> None:
+    def _judge_triangles(self, number: int, rows: Ints, surface: _Surface, obstacle: Obstacle) -> None:
         """Enter what the triangles of a patch do to an obstacle at some poses `rows` (n,)."""
         patch = self._patches.patches[number]
-        points = moments.points(number, patch, rows)
+        points = surface.points(number, patch, rows)
         corners = obstacle.seen_from(points)[:, patch.triangles]  # (n, t, 3, 3)
         gaps = obstacle.box_distance(corners.min(axis=2), corners.max(axis=2))  # (n, t)
         for row in np.argsort(gaps.min(axis=1)):
-            close = gaps[row] <= ledger.limit
+            close = gaps[row] <= surface.ledger.limit
             if not close.any():
                 return
-            surface = patch.triangles[close & has_area(points[row, patch.triangles])]
-            if not len(surface):
+            triangles = patch.triangles[close & has_area(points[row, patch.triangles])]
+            if not len(triangles):
                 continue
-            distance = self._distance(points[row], surface, obstacle)
-            found = Nearness(self._regions[patch.joint], obstacle.name, float(moments.times[rows[row]]), distance)
-            ledger.enter(moments.first + int(rows[row]), found)
+            distance = self._distance(points[row], triangles, obstacle)
+            surface.case.enter(int(rows[row]), self._regions[patch.joint], obstacle.name, distance)
 
     def _distance(self, points: Floats, triangles: Ints, obstacle: Obstacle) -> float:
         """Distance of the nearest triangle; negative: how far the deepest one would have to be moved to be free."""

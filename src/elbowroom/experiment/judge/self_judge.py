@@ -15,7 +15,7 @@ from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.made_once import made_once
 from elbowroom.body.root import ROOT_STATE
 from elbowroom.experiment.judge.capsule_shapes import CapsuleShapes, Placed
-from elbowroom.experiment.judge.ledger import Ledger, Nearness
+from elbowroom.experiment.judge.case import Case
 from elbowroom.experiment.judge.nearest_first import nearest_first
 from elbowroom.experiment.judge.obstacles import coal_library
 from elbowroom.experiment.judge.poses import Posed, Poser
@@ -59,27 +59,27 @@ class SelfJudge:
         pairs: list[list[int]] = np.sort(self._pairs, axis=1).tolist()
         return {(one, other): float(near) for (one, other), near in zip(pairs, self._natural, strict=True)}
 
-    def judge(self, posed: Posed, times: Floats, first: int, ledger: Ledger) -> None:
-        """Enter what the parts do at N poses, whose numbers begin at `first`."""
+    def judge(self, case: Case) -> None:
+        """Enter what the parts do."""
+        posed = case.posed
         still = Posed(posed.positions - posed.positions[:, :1], posed.rotations)  # about the hips: it moves less
         placed, stretches = self._shapes.placed(still), stretches_of(still)
         one, other = self._pairs.T
         away, every = self._shapes.away(stretches), np.arange(len(one))
         wide = self._bounds(placed, stretches.middles[:, None], every) - away[:, one] - away[:, other]  # (S, P)
-        for some, pairs in nearest_first(wide, lambda: ledger.depth_limit, _AT_ONCE):
+        for some, pairs in nearest_first(wide, lambda: case.ledger.depth_limit, _AT_ONCE):
             rows = stretches.rows(some)
             of_row = np.broadcast_to(pairs[:, None], rows.shape)
-            self._judge_near(placed, rows.ravel(), of_row.ravel(), times, first, ledger)
+            self._judge_near(placed, rows.ravel(), of_row.ravel(), case)
 
-    def _judge_near(self, placed: Placed, rows: Ints, pairs: Ints, times: Floats, first: int, ledger: Ledger) -> None:
+    def _judge_near(self, placed: Placed, rows: Ints, pairs: Ints, case: Case) -> None:
         """Enter what pairs (n,) do at poses `rows` (n,)."""
         bounds = self._bounds(placed, rows, pairs)
-        for (some,) in nearest_first(bounds, lambda: ledger.depth_limit, 1):
+        for (some,) in nearest_first(bounds, lambda: case.ledger.depth_limit, 1):
             pose, pair = int(rows[some[0]]), int(pairs[some[0]])
             one, other = (int(i) for i in self._pairs[pair])
             beyond = self._distance(placed, pose, one, other) - self._natural[pair]
-            names = self._shapes.names[one], self._shapes.names[other]
-            ledger.enter(first + pose, Nearness(*names, float(times[pose]), float(beyond)))
+            case.enter(pose, self._shapes.names[one], self._shapes.names[other], float(beyond))
 
     def _bounds(self, placed: Placed, poses: Ints, pairs: Ints) -> Floats:
         """A lower bound of the distances of pairs at poses: that of the nearest two of the balls round two axes."""

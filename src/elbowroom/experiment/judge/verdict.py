@@ -5,21 +5,25 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.control.recordings.recording import Recording
 from elbowroom.experiment.judge.capsule_judge import CapsuleJudge
+from elbowroom.experiment.judge.case import Case
 from elbowroom.experiment.judge.ledger import Contact, Ledger, Nearness
 from elbowroom.experiment.judge.mesh_judge import MeshJudge
 from elbowroom.experiment.judge.motion import Moments, ShownMotion
 from elbowroom.experiment.judge.obstacles import Surroundings, surroundings_of
-from elbowroom.experiment.judge.poses import Posed, Poser
+from elbowroom.experiment.judge.poses import Poser
 from elbowroom.experiment.judge.self_judge import self_judge
 from elbowroom.experiment.judge.settings import JudgeSettings
 from elbowroom.experiment.judge.skin import skin_of
 from elbowroom.experiment.judge.smoothness import Smoothness, smoothness
 from elbowroom.experiment.judge.soles import Soles
 from elbowroom.world.scene import Scene
+
+Floats = NDArray[np.float64]
 
 _AT_ONCE = 1200  # poses
 
@@ -120,25 +124,15 @@ class Judging:
             yield float(some.times[-1])
 
     def _judge(self, some: Moments, first: int) -> None:
-        posed = self._poser.at(self._motion, some)
-        body = self._soles.raised(posed, some)
+        posed, clock = self._poser.at(self._motion, some), self._motion.scene_times(some)
+        body = Case(self._soles.raised(posed, some), some.times, first, self._of_capsules)
         for around, capsules in zip(self._surroundings, self._capsules, strict=True):
-            self._judge_near(around, capsules, (body, some, first), self._of_capsules)
-        self._itself.judge(posed, some.times, first, self._of_itself)
+            _judge_near(around, capsules, body, clock)
+        self._itself.judge(Case(posed, some.times, first, self._of_itself))
         if self._skin is not None:
-            surface = self._soles.raised(posed, some, self._skin)
+            surface = Case(self._soles.raised(posed, some, self._skin), some.times, first, self._of_mesh)
             for around, mesh in zip(self._surroundings, self._mesh, strict=True):
-                self._judge_near(around, mesh, (surface, some, first), self._of_mesh)
-
-    def _judge_near(
-        self, around: Surroundings, judge: CapsuleJudge | MeshJudge, shown: tuple[Posed, Moments, int], ledger: Ledger
-    ) -> None:
-        """Have some poses judged, whose numbers begin somewhere: those at which what moves is near."""
-        posed, some, first = shown
-        times = self._motion.scene_times(some)
-        rows = around.near(posed, times, judge.reach + ledger.limit)
-        if rows.stop > rows.start:
-            judge.judge(around.seen(posed.part(rows), times[rows]), some.times[rows], first + rows.start, ledger)
+                _judge_near(around, mesh, surface, clock)
 
     def verdict(self) -> Verdict:
         """On all that is judged by now."""
@@ -156,6 +150,14 @@ class Judging:
             triangles_left_out=0 if skin is None else skin.left_out,
             smoothness=smoothness(motion),
         )
+
+
+def _judge_near(around: Surroundings, judge: CapsuleJudge | MeshJudge, case: Case, clock: Floats) -> None:
+    """Have those poses of a case judged at which what moves is near; `clock` (N,) is the scene's own time at each."""
+    rows = around.near(case.posed, clock, judge.reach + case.ledger.limit)
+    if rows.stop > rows.start:
+        near = case.part(rows)
+        judge.judge(near._replace(posed=around.seen(near.posed, clock[rows])))
 
 
 def _body_verdict(ledger: Ledger, motion: ShownMotion, moments: Moments) -> BodyVerdict:
