@@ -9,7 +9,7 @@ from elbowroom.planning.exact.lattice.postures import BLOCK, blocks_of
 from elbowroom.world.obstacles.blocks import COMFORT, capsule_clearances, lower_blocks
 from elbowroom.world.obstacles.clearance import pairwise_clearance
 from elbowroom.world.obstacles.obstacles import Obstacles
-from elbowroom.world.obstacles.rows import joined, move_into, unfilled
+from elbowroom.world.obstacles.rows import joined, move_into, room_for
 
 Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
@@ -84,7 +84,7 @@ def test_nothing_near_lowers_nothing() -> None:
 def test_a_box_in_a_frame_is_as_far_as_it_was() -> None:
     rng = np.random.default_rng(5)
     near = random_boxes(rng, 6).standing
-    moved = unfilled(near)
+    moved = room_for(near, 6)
     place, turn = rng.uniform(-1.0, 1.0, 3), quaternion.normalize(rng.normal(size=4))
     for b in range(6):
         move_into(near, b, place, turn, moved, b)

@@ -138,12 +138,6 @@ def how_many(near: Nearby) -> int:
 
 
 @exact_kernel
-def unfilled(near: Nearby) -> Nearby:
-    """As many obstacles, to be written to by other kernels."""
-    return Nearby(np.empty(near.rows.shape), near.packed)
-
-
-@helper
 def room_for(near: Nearby, count: int) -> Nearby:
     """Room for so many of the obstacles, to be written to by other kernels."""
     return Nearby(np.empty((count, ROW)), near.packed)

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from elbowroom.jit import exact_kernel
 from elbowroom.world.obstacles.blocks import lower_blocks
 from elbowroom.world.obstacles.layout import Nearby
-from elbowroom.world.obstacles.rows import around, move_into, unfilled
+from elbowroom.world.obstacles.rows import around, how_many, move_into, room_for
 
 Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
@@ -42,7 +42,8 @@ def clearances_under(
     blocks, lanes = postures.lanes.shape[0], postures.lanes.shape[3]
     out = np.empty((places.shape[0], blocks, lanes), np.float32)
     out[:] = FAR
-    near, moved, checks = unfilled(obstacles), unfilled(obstacles), 0
+    most, checks = how_many(obstacles), 0
+    near, moved = room_for(obstacles, most), room_for(obstacles, most)
     for f in range(places.shape[0]):
         if not chosen[f]:
             continue

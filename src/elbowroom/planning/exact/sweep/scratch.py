@@ -18,7 +18,7 @@ from elbowroom.world.obstacles.blocks import (
     spread_balls,
 )
 from elbowroom.world.obstacles.layout import Nearby
-from elbowroom.world.obstacles.rows import shift, unfilled
+from elbowroom.world.obstacles.rows import how_many, room_for, shift
 
 _BLOCK = plain(BLOCK)  # postures that are posed at once
 
@@ -64,8 +64,8 @@ def new_scratch(postures: Postures, stem: Limb, obstacles: Nearby) -> Scratch:
         checks,
         limb_scratch(limb, _BLOCK),
         limb_scratch(stem, _BLOCK),
-        unfilled(obstacles),
-        unfilled(obstacles),
+        room_for(obstacles, how_many(obstacles)),
+        room_for(obstacles, how_many(obstacles)),
         postures.lanes.reshape(postures.lanes.size),
         spread,
         np.empty((postures.lanes.shape[0], BLOCK), np.float32),

@@ -18,7 +18,7 @@ from elbowroom.world.obstacles.clearance import lower_clearance
 from elbowroom.world.obstacles.free_map import CELL, LEVELS, Window
 from elbowroom.world.obstacles.from_above import away_of, ball_radius, heights_of, place_of
 from elbowroom.world.obstacles.layout import Nearby, Spans
-from elbowroom.world.obstacles.rows import any_in, at_span, first_of, how_many, shifted_into, unfilled
+from elbowroom.world.obstacles.rows import any_in, at_span, first_of, how_many, room_for, shifted_into
 
 Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
@@ -120,7 +120,8 @@ def _check_narrow(room: _Cells, cells: Indices, near: Nearby, passing: Spans, mo
     Where legs turn out to lack room, the cells beside that one are checked too: paths would lead there next.
     """
     count, columns, turns = 0, room.clear.shape[2], room.clear.shape[3]
-    standing, moving = unfilled(near), unfilled(at_span(passing, 0))
+    first = at_span(passing, 0)
+    standing, moving = room_for(near, how_many(near)), room_for(first, how_many(first))
     for i in range(cells.shape[0]):
         j, t = cells[i, 0], cells[i, 1]
         if count >= most or not _in_doubt(room, i, j, t):
