@@ -10,6 +10,7 @@ from elbowroom.world.obstacles.clearance import clearance, pairwise_clearance
 from elbowroom.world.obstacles.layout import LANES, PER_METRE, TILE, Nearby
 from elbowroom.world.obstacles.obstacles import Obstacles
 from elbowroom.world.obstacles.passing_by import apart_from, boxes_round
+from elbowroom.world.obstacles.rows import bounds_of
 from elbowroom.world.obstacles.shapes import Box, Cylinder
 
 Floats = NDArray[np.float64]
@@ -21,10 +22,17 @@ AROUND = 60
 @kernel
 def apart(near: Nearby, tiles: Floats32, squares: Floats32) -> Floats32:
     """How far obstacles lie outside of what the first tile reaches, for who is no kernel."""
-    boxes = boxes_round(near)
-    out = np.empty(boxes.shape[1], np.float32)
-    apart_from(tiles, 0, squares, boxes, out)
+    sides = boxes_round(near).sides
+    out = np.empty(sides.shape[1], np.float32)
+    apart_from(tiles, 0, squares, sides, out)
     return out
+
+
+@kernel
+def boxes(near: Nearby) -> tuple[Floats32, bool]:
+    """The boxes round obstacles, and whether any of these is dear, for who is no kernel."""
+    found = boxes_round(near)
+    return found.sides, found.dear
 
 
 def obstacles(rng: np.random.Generator) -> Nearby:
@@ -65,11 +73,20 @@ def test_who_asks_for_little_is_told_the_same_among_many() -> None:
         np.testing.assert_array_equal(told, np.minimum(all_told, np.float32(farthest)))
 
 
-def test_boxes_are_looked_into_at_once() -> None:
+def test_boxes_round_obstacles_are_a_little_larger_than_they_must_be() -> None:
+    near = obstacles(np.random.default_rng(7))
+    low, high = bounds_of(near)
+    sides, _ = boxes(near)
+    for spare in (low - sides[:3].T, sides[3:].T - high):
+        assert np.all((spare > 0.9e-3) & (spare < 1.1e-3))
+
+
+def test_boxes_are_looked_into_at_once_and_nothing_else_is() -> None:
     rng = np.random.default_rng(6)
     turns = quaternion.normalize(rng.normal(size=(AROUND, 4)))
-    boxes = Obstacles.boxes(rng.uniform(-2.0, 2.0, (AROUND, 3)), turns, rng.uniform(0.02, 0.3, (AROUND, 3)))
-    assert len(apart(boxes.standing, np.zeros(TILE, np.float32), np.zeros(LANES, np.float32))) == 0
+    cheap = Obstacles.boxes(rng.uniform(-2.0, 2.0, (AROUND, 3)), turns, rng.uniform(0.02, 0.3, (AROUND, 3)))
+    assert not boxes(cheap.standing)[1]
+    assert boxes(obstacles(rng))[1]
 
 
 def test_nothing_is_passed_by_while_nothing_is_known() -> None:

@@ -97,8 +97,8 @@ def _fill_window(near: Nearby, stance: Floats32, place: Floats, heights: Floats3
         dx, dz = x - place[0], z - place[1]
         center_a, center_l = (dx * sine + dz * cosine) / cell, (dx * cosine - dz * sine) / cell
         away = stance[0] + farthest
-        reach_a = (reach_along(near, b, sine, cosine) + away) / cell + 1.0
-        reach_l = (reach_along(near, b, cosine, -sine) + away) / cell + 1.0
+        reach_a = (reach_along(near, b, (sine, 0.0, cosine)) + away) / cell + 1.0
+        reach_l = (reach_along(near, b, (cosine, 0.0, -sine)) + away) / cell + 1.0
         first_a, last_a = max(0, int(center_a - reach_a)), min(ahead, int(center_a + reach_a) + 1)
         first_l, last_l = max(0, int(center_l - reach_l)), min(left, int(center_l + reach_l) + 1)
         rows, columns = last_a - first_a, last_l - first_l

@@ -19,7 +19,7 @@ from numpy.typing import ArrayLike, NDArray
 from elbowroom.jit import brief_kernel, helper, inner_kernel, kernel, plain
 from elbowroom.world.obstacles.layout import LANES, PER_METRE, ROW, TILE, Nearby
 from elbowroom.world.obstacles.pairs.tiles import fill_tile_rows, lower_squares, lower_to_squares, same_kind
-from elbowroom.world.obstacles.passing_by import apart_from, boxes_round
+from elbowroom.world.obstacles.passing_by import Boxes, apart_from, boxes_round
 
 _FIRST = plain(0)
 _TILES = 32  # tiles that are treated together: they stay in the first-level cache
@@ -100,16 +100,16 @@ def _fill_tiles(segment: Floats32, start: int, count: int, tiles: Floats32) -> N
 
 @inner_kernel
 def _lower_all(
-    tiles: Floats32, used: int, rows: Floats32, packed: Floats32, boxes: Floats32, pairs: Longs, squares: Floats32
+    tiles: Floats32, used: int, rows: Floats32, packed: Floats32, boxes: Boxes, pairs: Longs, squares: Floats32
 ) -> None:
     """Lower the squares of the tiles in use to those from all obstacles that they do not pass by.
 
-    `boxes` (SIDES, B) are those round the obstacles, or none of them are passed by; `pairs` (_PAIRS, 2) is scratch.
+    `boxes` are those round the obstacles; `pairs` (_PAIRS, 2) is scratch.
     """
-    passing, count = boxes.shape[1] > _FEW, _FIRST
-    apart = np.empty((used if passing else 0, boxes.shape[1]), np.float32)
+    passing, count = boxes.dear and boxes.sides.shape[1] > _FEW, _FIRST
+    apart = np.empty((used if passing else 0, boxes.sides.shape[1]), np.float32)
     for t in range(apart.shape[0]):
-        apart_from(tiles, t, squares, boxes, apart[t])
+        apart_from(tiles, t, squares, boxes.sides, apart[t])
     for b in range(rows.shape[0] // ROW):
         if count > 0 and not same_kind(rows, b, b - 1):
             lower_squares(tiles, rows, packed, pairs, count, squares)

@@ -5,40 +5,46 @@ what it costs to see sixteen axes from an obstacle.
 """
 
 import math
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.jit import inner_kernel
-from elbowroom.world.obstacles.layout import HALF, KIND, LANES, PER_METRE, ROUNDING, TILE, TURN, Kind, Nearby
+from elbowroom.world.obstacles.extents import reach_along
+from elbowroom.world.obstacles.layout import KIND, LANES, PER_METRE, TILE, Kind, Nearby
 
 Floats32 = NDArray[np.float32]
 
-SIDES = 6  # numbers of a box: its least coordinates, then its greatest
+_AXES = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 _LANES, _TILE = np.uint64(LANES), np.uint64(TILE)
 _METRES: Any = np.float32(1.0 / PER_METRE)
 _SOON = float(Kind.ROUNDED)  # up to this kind they are boxes, with sharp or rounded edges
 _SLACK: Any = np.float32(1e-3)  # metres by which a box is larger than it must be: more than any rounding
 
 
+class Boxes(NamedTuple):
+    """The boxes round B obstacles, along the frame's axes."""
+
+    sides: Floats32  # (6, B) metres: their least coordinates, then their greatest
+    dear: bool  # whether any is dear to look into: else one may as well look into all
+
+
 @inner_kernel
-def boxes_round(near: Nearby) -> Floats32:
-    """The boxes round obstacles, (SIDES, B) in metres; (SIDES, 0) where all are boxes, which are soon looked into."""
-    boxes, dear = np.empty((SIDES, near.rows.shape[0]), np.float32), False
+def boxes_round(near: Nearby) -> Boxes:
+    """The boxes round obstacles, a little larger than they must be."""
+    sides, dear = np.empty((6, near.rows.shape[0]), np.float32), False
     for b in range(near.rows.shape[0]):
         dear = dear or near.rows[b, KIND] > _SOON
         for i in range(3):
-            reach = near.rows[b, ROUNDING] + _SLACK
-            for k in range(3):
-                reach += abs(near.rows[b, TURN + 3 * k + i]) * near.rows[b, HALF + k]
-            boxes[i, b], boxes[3 + i, b] = near.rows[b, i] - reach, near.rows[b, i] + reach
-    return boxes if dear else boxes[:, :0].copy()
+            reach = reach_along(near, b, _AXES[i]) + _SLACK
+            sides[i, b], sides[3 + i, b] = near.rows[b, i] - reach, near.rows[b, i] + reach
+    return Boxes(sides, dear)
 
 
 @inner_kernel
-def apart_from(tiles: Floats32, t: int, squares: Floats32, boxes: Floats32, apart: Floats32) -> None:
-    """Write to `apart` (B,) how far obstacles in `boxes` (SIDES, B) lie outside of what may be nearer to tile t.
+def apart_from(tiles: Floats32, t: int, squares: Floats32, sides: Floats32, apart: Floats32) -> None:
+    """Write to `apart` (B,) how far obstacles in boxes, by their `sides`, lie outside of what may be nearer to tile t.
 
     Nearer than `squares` say: squared distances of axes in units of the tiles. Positive for what it passes by.
     """
@@ -57,4 +63,4 @@ def apart_from(tiles: Floats32, t: int, squares: Floats32, boxes: Floats32, apar
             )
         low, high = low - away, high + away
         for b in range(np.uint64(apart.shape[0])):
-            apart[b] = max(apart[b], boxes[i, b] - high, low - boxes[3 + i, b])
+            apart[b] = max(apart[b], sides[i, b] - high, low - sides[3 + i, b])
