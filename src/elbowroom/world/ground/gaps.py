@@ -11,7 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.jit import exact_kernel, helper, inner_exact_kernel
-from elbowroom.world.ground.ground import Ground, height_at, heights_at
+from elbowroom.world.ground.ground import Ground, heights_at
+from elbowroom.world.ground.whole_squares import is_whole
 
 Floats = NDArray[np.float64]
 Longs = NDArray[np.int64]
@@ -19,7 +20,6 @@ Longs = NDArray[np.int64]
 WIDEST = 0.32  # metres
 _MOST = 8  # heights over a square that are told apart
 _ROOM = 256  # squares that are spanned, at first; at least as many as `_MOST`
-_LOOKS = 4  # places across a square that are looked at for cracks
 _AXES = np.array([[1, 0], [0, 1], [1, 1], [1, -1]])
 
 
@@ -107,7 +107,7 @@ def _span_between(
             rise = heights[second, j] - heights[first, i]
             height = heights[first, i] + rise * a / (a + b)
             known = _is_near(heights[cell], counts[cell], height, ground.step)
-            known = known and (a + b > 2 or _is_whole(ground, cell, height))
+            known = known and (a + b > 2 or _is_covered(ground, cell, height))
             known = known or _is_near(over, spanned, height, ground.step)
             if abs(rise) <= ground.step and not known and spanned < _MOST:
                 over[spanned] = height
@@ -124,19 +124,14 @@ def _square_at(ground: Ground, cell: int, rows: int, columns: int) -> int:
 
 
 @helper
-def _is_whole(ground: Ground, cell: int, height: float) -> bool:
-    """Whether there is ground about a height wherever one looks in a square."""
+def _is_covered(ground: Ground, cell: int, height: float) -> bool:
+    """Whether there is ground about a height all over a square: one looks where that is not known."""
     for e in range(ground.even_starts[cell], ground.even_starts[cell + 1]):
         if abs(ground.evens[e] - height) <= ground.step:
             return True
     x, z = ground.corner[0] + ground.cell * (cell // ground.shape[1]), ground.corner[1]
     z += ground.cell * (cell % ground.shape[1])
-    missing = 0
-    for i in range(_LOOKS):
-        for j in range(_LOOKS):
-            aside, along = ground.cell * (i + 0.5) / _LOOKS, ground.cell * (j + 0.5) / _LOOKS
-            missing += height_at(ground, x + aside, z + along, height) == -np.inf
-    return missing == 0
+    return is_whole(ground, (x, z), height, ground.step)
 
 
 @inner_exact_kernel

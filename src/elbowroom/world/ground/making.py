@@ -9,8 +9,9 @@ from elbowroom.geometry import quaternion
 from elbowroom.jit import exact_kernel, helper, plain
 from elbowroom.world.clipping import clipped
 from elbowroom.world.ground.gaps import spans_over
-from elbowroom.world.ground.ground import FIRM, PLAIN, RELIEF, SPANS, STEEPEST, STEP, Ground, firm_at
+from elbowroom.world.ground.ground import FIRM, PLAIN, RELIEF, SPANS, STEEPEST, STEP, Ground
 from elbowroom.world.ground.kept_ground import kept_ground
+from elbowroom.world.ground.whole_squares import is_whole
 from elbowroom.world.obstacles.obstacles import Obstacles
 from elbowroom.world.obstacles.shapes import Mesh
 from elbowroom.world.obstacles.triangles import triangles_of
@@ -25,7 +26,6 @@ RISE = 0.005  # metres: what rises no higher from the plane is the plane
 _CELL = 0.08  # metres
 _X, _Z, _CORNERS = plain(0), plain(2), plain(3)  # axes over the ground, and what a triangle has
 _MOST_CELLS, _MOST_MEMBERS = 400_000, 20_000_000
-_LOOKS = 4  # places across a square that are looked at
 _SAME, _WHOLE = 2e-4, 0.9999  # metres, share of a cell: what is as high, and covered
 _HAIR = 1e-4  # metres by which what is known of a part of a triangle is wide of it
 _FLAT = 1e-9  # m²: a triangle that covers less of the ground is upright
@@ -220,7 +220,7 @@ def _evens(ground: Ground) -> tuple[Longs, Floats]:
                 parts[count] = _part_in(planes[members[m]], corner, side)
                 count += parts[count, 0] > 0.0
         for k in range(count):
-            if _is_even(parts[:count], k, side, ground.step) and _is_whole(ground, corner, parts[k, 2]):
+            if _is_even(parts[:count], k, side, ground.step) and is_whole(ground, corner, parts[k, 2], RELIEF):
                 if found == out.shape[0]:
                     longer = np.empty(2 * found)
                     longer[:found] = out
@@ -229,20 +229,6 @@ def _evens(ground: Ground) -> tuple[Longs, Floats]:
                 found += 1
         begins[cell + 1] = found
     return begins, out[:found].copy()
-
-
-@helper
-def _is_whole(ground: Ground, corner: tuple[float, float], top: float) -> bool:
-    """Whether there is firm ground just below a height wherever one looks in a square.
-
-    Surfaces that lie over one another may be as large as it together, and leave a part of it open.
-    """
-    missing = 0
-    for i in range(_LOOKS):
-        for j in range(_LOOKS):
-            aside, along = ground.cell * (i + 0.5) / _LOOKS, ground.cell * (j + 0.5) / _LOOKS
-            missing += firm_at(ground, corner[0] + aside, corner[1] + along, top) < top - RELIEF
-    return missing == 0
 
 
 @helper
