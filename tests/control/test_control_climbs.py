@@ -12,6 +12,7 @@ from elbowroom.body.root import HEIGHT
 from elbowroom.control.controller import Controller
 from elbowroom.control.frame import Frame
 from elbowroom.control.journey import JourneyState
+from elbowroom.control.plans.lookahead import Lookahead
 from elbowroom.control.recordings.recording import Recorder, Recording
 from elbowroom.control.recordings.replay import replay
 from elbowroom.errors import InputError
@@ -21,6 +22,7 @@ from elbowroom.planning.command import Command
 from elbowroom.planning.model.highest_step import CLIMB, as_climbed, highest_climb, highest_step
 from elbowroom.world.ground.ground import STEP
 from elbowroom.world.scene import Scene
+from late_desk import LateDesk
 from sampled import sampled
 
 AVATAR = Humanoid.default()
@@ -82,6 +84,21 @@ def test_another_library_finds_nothing_touched_in_a_climb(top: float, length: fl
     verdict = judge(motion, AVATAR, scene)
     assert verdict.clean, (verdict.capsules.contacts[:3], verdict.mesh and verdict.mesh.contacts[:3])
     assert verdict.itself.touching == 0
+
+
+@pytest.mark.parametrize(("late", "aside"), sampled([(5, 0.3), (12, 0.1), (12, 0.7)]))
+def test_nobody_is_stuck_before_it_is_decided_whether_to_climb(late: int, aside: float) -> None:
+    """Plans that come late: one stands for a moment before the next one tells."""
+    scene, desk = across(0.4, 2.0), LateDesk(late)
+    start = scene.start._replace(z=scene.start.z + aside)
+    controller = Controller(AVATAR, scene, start=start, ahead=Lookahead(desk=desk))
+    for _ in range(8 * 60):
+        desk.next_turn()
+        frame = controller.step(FORWARD, FRAME)
+        assert not frame.stuck
+        if frame.root[HEIGHT] > 0.0:
+            return
+    pytest.fail("it has not climbed")
 
 
 def test_what_is_higher_than_a_knee_is_stood_before() -> None:

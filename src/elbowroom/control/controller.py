@@ -181,7 +181,7 @@ class Controller:
         self._stands_by = True  # whether the user wants nothing
         self._travel: float | None = None  # radians, the heading that the last plan means to travel
         self._flow = self._next = Phase.PLAN
-        self._blocked = self._resting = self._halting = self._vain = False
+        self._blocked = self._resting = self._halting = self._vain = self._undecided = False
         self.late_plans = 0  # that could not be shown any more when they came
         self._showing = self._standing_at_start()
 
@@ -391,7 +391,7 @@ class Controller:
         self._plan_report = PlanReport(number, self._queue.time, command, root, answer.local)
         self._halting = not found and (self._halting or steering.overturned(self._command, command))
         self._command, self._next, self._resting = command, Phase.PLAY, False
-        self._travel = answer.travel
+        self._travel, self._undecided = answer.travel, answer.undecided
         self._blocked = not found and self._queue.empty
         self._queue.start_count()
         if answer.uppers is not None:
@@ -466,6 +466,6 @@ class Controller:
         return not command.idle and (self._blocked or self._walled_in())
 
     def _walled_in(self) -> bool:
-        """Whether the root stands because there is no way on for it."""
+        """Whether the root stands because there is no way on for it, climbing included."""
         stopped = self._plan_report is not None and self._plan_report.root.kind is RootPlanKind.STOPPED
-        return stopped and self.stands
+        return stopped and self.stands and not self._undecided

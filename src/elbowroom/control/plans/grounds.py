@@ -2,7 +2,8 @@
 
 Who walks takes steps of up to a quarter of a metre; what is higher is in the way, and one goes round it. Who stands
 before it, and finds no way on, looks at the same place as somebody who climbs: on ground that is reached by higher
-steps. Where that leads on one is there from then on, and goes slowly, until both grounds are the same all about.
+steps. Where that leads on one is there from then on, and goes slowly, until both grounds are the same all about. Who
+still comes to stand there is not stuck yet: that is undecided.
 """
 
 import math
@@ -77,9 +78,11 @@ class Grounds:
         if climbs and self._differ(root, _about(root), _ABOUT):
             return self._climbing(question)
         answer = self.walked.wayfinder.answer(question)
-        vain = answer is not None and _stands_before(answer, question)
-        if not (vain and may_climb) or question.query.time < self._again:
+        if answer is None or not (may_climb and _finds_no_way(answer, question)) or question.query.time < self._again:
             return answer
+        if not is_still(np.array(root[3:6])):
+            there = RootState.of(answer.path.states[-1])
+            return answer._replace(undecided=self._differ(there, _ahead(there, command), 0))
         over = self._climbing(question) if self._differ(root, _ahead(root, command), 0) else None
         if over is not None and _leads_on(over):
             return over
@@ -133,11 +136,10 @@ def _slower(question: Question) -> Question:
     return question._replace(query=question.query._replace(command=command))
 
 
-def _stands_before(answer: Answer, question: Question) -> bool:
-    """Whether the root stands, is asked to go on, and finds no way."""
-    query = question.query
-    stands = answer.root.kind is RootPlanKind.STOPPED and is_still(np.array(query.root[3:6]))
-    return stands and question.assist and query.command.speed > _ASKS
+def _finds_no_way(answer: Answer, question: Question) -> bool:
+    """Whether the root is asked to go on, and finds no way."""
+    asked = question.assist and question.query.command.speed > _ASKS
+    return asked and answer.root.kind is RootPlanKind.STOPPED
 
 
 def _leads_on(answer: Answer) -> bool:

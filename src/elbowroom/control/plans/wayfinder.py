@@ -42,6 +42,7 @@ class Answer(NamedTuple):
     velocities: Floats | None  # (n+1, LOCAL) where the planner has chosen them
     travel: float | None = None  # radians, the heading that it means to travel; None where that is nowhere
     climbs: bool = False  # on the ground that one climbs
+    undecided: bool = False  # it leads to a stand from where one may climb: that is looked at there
 
 
 class Wayfinder:
