@@ -155,6 +155,18 @@ def test_who_plans_slowly_steps_back_later(humanoid: Humanoid, interval: float, 
     assert frames * DT == pytest.approx(seconds, abs=2.0 * DT)
 
 
+def test_who_is_stuck_nearly_there_has_arrived_however_slowly_he_plans(humanoid: Humanoid) -> None:
+    """Waiting for more plans, one went back the way one came, and began anew: low roofs end ways so."""
+    controller = Controller(humanoid, Scene.load("empty"))
+    journey = Journey(controller.navigator, controller.navigator.find((0.0, 0.0), (0.0, 5.0)), FORWARD)
+    frames = 0
+    while journey.walking:
+        journey.command(RootState(z=4.75), DT, stuck=True, plans=frames // 60)
+        frames += 1
+        assert frames * DT < 1.5
+    assert journey.state is JourneyState.ARRIVED
+
+
 def bend() -> Scene:
     """A wall across, which ends on the left; one has to go round its end, and back."""
     return Scene.of("bend", [{"type": "box", "center": [-1.5, 1.2, 2.5], "size": [6.0, 2.4, 0.2]}], finish=(0.0, 5.0))
