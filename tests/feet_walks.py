@@ -6,9 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.fitting.proportions import proportional_humanoid
-from elbowroom.body.gait.cycle import phase_rate
 from elbowroom.body.gait.footholds import UNKNOWN, beside, onward
 from elbowroom.body.gait.living import Body, body_of, living
+from elbowroom.body.gait.stride import phase_rate
 from elbowroom.body.pose.kinematics import body_model
 from elbowroom.body.root import CARRIAGE, FOOT, ROOT_STATE
 

@@ -6,11 +6,12 @@ import numpy as np
 import pytest
 
 from elbowroom.body.fitting.proportions import proportional_humanoid
-from elbowroom.body.gait.cycle import flat_place, foot_poses, home_of, stride_of
+from elbowroom.body.gait.cycle import flat_place, foot_poses, home_of
 from elbowroom.body.gait.foot_state import standing
 from elbowroom.body.gait.footholds import beside, onward, settled
 from elbowroom.body.gait.gliding import gliding
 from elbowroom.body.gait.posed_feet import posed_feet
+from elbowroom.body.gait.stride import stride_of
 from elbowroom.body.pose.kinematics import body_model, leg_capsules, posture_capsules
 from elbowroom.body.root import FOOT, ROOT_STATE, WITH_FEET
 from feet_walks import DT, GAIT, WANTED, Velocities, in_world, path, random_wish, walked

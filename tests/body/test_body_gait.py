@@ -4,17 +4,10 @@ from numpy.typing import NDArray
 
 from elbowroom.body.dof import DOF, LOWERING, DofGroup, limits
 from elbowroom.body.fitting.proportions import proportional_humanoid
-from elbowroom.body.gait.cycle import (
-    STANDARD_LEG,
-    STEEPEST,
-    feet_standing,
-    foot_poses,
-    hips_sinks,
-    phase_rate,
-    quickness,
-    stride_length,
-)
+from elbowroom.body.gait.cycle import foot_poses
 from elbowroom.body.gait.legs import leg_rotations
+from elbowroom.body.gait.lowered_hips import STEEPEST, hips_sinks
+from elbowroom.body.gait.stride import STANDARD_LEG, feet_standing, phase_rate, quickness, stride_length
 from elbowroom.body.pose import kinematics
 from elbowroom.body.pose.kinematics import BodyModel, body_model
 from elbowroom.geometry import quaternion

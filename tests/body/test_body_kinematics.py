@@ -5,7 +5,7 @@ from numpy.typing import NDArray
 from elbowroom.body.bones import PARENTS
 from elbowroom.body.dof import CHILDREN, DOF, LOCAL, LOCAL_GROUPS, DofGroup, followed, limits
 from elbowroom.body.fitting.proportions import proportional_capsules, proportional_humanoid, proportional_skeleton
-from elbowroom.body.gait.cycle import hips_sinks
+from elbowroom.body.gait.lowered_hips import hips_sinks
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.pose import kinematics
 from elbowroom.body.pose.kinematics import BodyModel, body_model

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
-from elbowroom.body.gait.cycle import feet_standing
+from elbowroom.body.gait.stride import feet_standing
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.cli.main import app
 from elbowroom.errors import InputError

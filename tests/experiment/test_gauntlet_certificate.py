@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from elbowroom.body.dof import DofGroup, within_limits
-from elbowroom.body.gait.cycle import phase_rate
+from elbowroom.body.gait.stride import phase_rate
 from elbowroom.body.pose.kinematics import body_model, leg_capsules, posture_capsules
 from elbowroom.experiment.gauntlet.certificate import RATE
 from elbowroom.experiment.gauntlet.course import Course

@@ -5,7 +5,7 @@ import pytest
 from numpy.typing import NDArray
 
 from elbowroom.body.dof import LOCAL, DofGroup, columns_of, limits, within_limits
-from elbowroom.body.gait.cycle import hips_sinks
+from elbowroom.body.gait.lowered_hips import hips_sinks
 from elbowroom.geometry import quaternion
 from elbowroom.planning.gaze import LEAD, keeping_gaze
 from elbowroom.planning.goal import natural_walk

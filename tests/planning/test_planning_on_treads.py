@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from elbowroom.body.gait.cycle import phase_rate, quickness
+from elbowroom.body.gait.stride import phase_rate, quickness
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.pose.kinematics import body_model
 from elbowroom.body.root import HEIGHT, RISES, RootState

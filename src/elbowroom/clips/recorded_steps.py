@@ -9,8 +9,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.body.gait.cycle import GaitShape, stride_of
+from elbowroom.body.gait.cycle import GaitShape
 from elbowroom.body.gait.own_steps import AHEAD, ASIDE, KEYS, LIFT, PATH, PITCH, YAW, OwnSteps
+from elbowroom.body.gait.stride import stride_of
 from elbowroom.clips.body_motion import BodyMotion
 from elbowroom.clips.carried import facing, middle_of_hips
 from elbowroom.geometry import quaternion

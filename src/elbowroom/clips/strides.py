@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.body.gait.cycle import phase_rate
+from elbowroom.body.gait.stride import phase_rate
 from elbowroom.clips.body_motion import BodyMotion
 from elbowroom.geometry.quaternion import angle_between
 

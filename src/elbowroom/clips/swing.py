@@ -14,7 +14,8 @@ from elbowroom.body.clips.clip import MotionClip
 from elbowroom.body.clips.stock_clips import arm_swing_goal
 from elbowroom.body.dof import LOCAL, LOCAL_GROUPS, LOWERING, DofGroup, clamp, columns_of
 from elbowroom.body.gait.carriage import AHEAD, ASIDE, POSING
-from elbowroom.body.gait.cycle import GaitShape, hips_sinks
+from elbowroom.body.gait.cycle import GaitShape
+from elbowroom.body.gait.lowered_hips import hips_sinks
 from elbowroom.body.gait.own_steps import CYCLE, PATH, OwnSteps
 from elbowroom.body.gait.own_stride import GROWTH, PUBLISHED, WIDEST, OwnStride, at_height
 from elbowroom.body.root import WITH_FEET

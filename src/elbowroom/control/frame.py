@@ -7,8 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.dof import DOF, LOCAL
-from elbowroom.body.gait.cycle import feet_standing
 from elbowroom.body.gait.foot_state import standing
+from elbowroom.body.gait.stride import feet_standing
 from elbowroom.body.root import ROOT_STATE
 from elbowroom.control.key_frame_queue import KeyFrames
 from elbowroom.planning.command import Command

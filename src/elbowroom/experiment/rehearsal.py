@@ -11,10 +11,10 @@ import numpy as np
 
 from elbowroom.body.dof import LOCAL, DofGroup, columns_of
 from elbowroom.body.fitting.slim_capsule import Wanted, slimmest
-from elbowroom.body.gait.cycle import feet_standing, stride_length
 from elbowroom.body.gait.footholds import UNKNOWN, beside, onward, settled
 from elbowroom.body.gait.gliding import gliding
 from elbowroom.body.gait.living import body_of, living
+from elbowroom.body.gait.stride import feet_standing, stride_length
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.pose.kinematics import body_model, leg_capsules, lower_body
 from elbowroom.body.root import CARRIAGE, ROOT_STATE, RootState

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.dof import ARMS, MAX_ELEVATION, DofGroup, columns_of, limits
-from elbowroom.body.gait.cycle import hips_lean
+from elbowroom.body.gait.lowered_hips import hips_lean
 from elbowroom.jit import exact_kernel, helper
 from elbowroom.planning.gaze import keeping_gaze
 

@@ -1,11 +1,11 @@
-"""A plain walking cycle tied to the root's motion: cadence, foot paths and the bob of the pelvis.
+"""A plain walking cycle tied to the root's motion: foot paths and the bob of the pelvis, at the cadence of `stride.py`.
 
 The stance foot stands still in the world: in the root's frame it moves exactly opposite to the root, turn included. It
 comes down on its heel, lies flat, and rolls over the joint of the toes, which stay where they are. The swing foot
 returns on a cubic that meets the stance foot's velocity at both ends. How the foot rolls and the hips go up and down is
 fitted so that the knee, which follows from both, goes through a stride as people's do (docs/motion.md). Everything is
 a function of the root state alone; with the speed every excursion goes to zero, so that a body at rest stands with its
-feet together. Only the hips are free to come lower than the walk has them: `hips_sinks`.
+feet together. Only the hips are free to come lower than the walk has them (`lowered_hips.py`).
 """
 
 from typing import NamedTuple
@@ -13,32 +13,16 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.body.root import HEIGHT
+from elbowroom.body.gait.stride import CLIMB, STANDARD_LEG, Stride, climbing_stride, stride_at
 from elbowroom.body.skeleton import Skeleton
-from elbowroom.jit import brief_kernel, helper, inner_kernel, kernel
+from elbowroom.jit import helper, inner_kernel, kernel
 
 Floats = NDArray[np.float64]
-Bools = NDArray[np.bool_]
-
-STANDARD_LEG = 0.491 * 1.72  # metres: thigh and shin of an average adult, see `proportions`
 
 # Columns of `GaitShape.legs`: hip and ankle in T-pose (root frame), ball before and heel behind the ankle, thigh, shin,
 # height of the toes' joint above the sole.
 _HIP, _ANKLE, _BALL, _HEEL, _THIGH, _SHIN, _TOES = 0, 3, 6, 7, 8, 9, 10
 
-_CLIMB = HEIGHT + 1  # column of root states: how fast they go up
-
-_STATURE = 1.72  # metres, of the standard leg
-_CADENCE = 64.8 / 60.0  # strides/s at one stature per second
-_SLOW = (0.30 / _STATURE) ** 2  # below some 0.3 m/s cadence is constant and strides shrink
-_PACE = 0.57  # power of a body's size by which its strides are quicker at the same speed
-_STILL = 1e-3  # m/s: below, the phase rests
-_RISE_OF_STEP = 0.17  # metres that a step leads up or down at most, on the whole: a tread
-_LATERAL, _TURN, _BACK = 2.3, 1.2, 1.25  # such steps are short and quick: weights in the effective speed
-_DUTY, _DUTY_LOSS = 0.6425, 0.0353  # stance part of the cycle at standstill, and how much less per m/s (Kirtley 1985)
-_REACH = 1.4  # longest stance path in leg lengths, beyond it the body runs
-_STEP = 1.26  # metres, of a standard leg's stride at 1.1 m/s: the pitch of the foot and the bob are its
-_LONGEST = 1.25  # of that: what is longer lifts and pitches the foot no more
 _HEEL_STRIKE, _TOE_OFF = 0.292, 0.92  # radians of foot pitch
 _FLAT, _RISE = 0.16, 0.45  # of the stance: from when on the foot is flat, and its heel rises
 _ROLL, _ROLLING = 4.0, 0.5  # how late the heel rises, and how fast it still does so at toe-off
@@ -48,11 +32,6 @@ _RELAXED = 0.5  # how much less the swinging foot's toes are bent than they woul
 _BEHIND = 0.062  # metres that a standard leg's stance lies behind the hips
 _BOB, _LOWEST = 0.0292, 0.0132  # metres, of the hips' way up and down, and the phase at which they are lowest
 _BOB_ASIDE = 2.4  # metres, of the same in steps aside, for the square of how wide they are
-# How far lowered hips lean forward, radians, and half leg lengths from which on they lean no more: hardly while knees
-# will do. With thighs that rise in a stride this stays within what hips flex (120 degrees, the book named in `dof`).
-_LEAN, _LEANING = 0.6, 0.45
-STEEPEST = 1.5 * _LEAN / _LEANING  # radians that they lean more for a unit of lowering, at most
-_SETBACK = 0.5  # how far lowered hips go back, against how far they go down; less, and the shins lean too far
 _STRETCH, _STRIDE_STRETCH = 0.999, 0.9981  # how straight the longest leg of the cycle gets, standing and walking
 
 
@@ -80,60 +59,7 @@ def gait_shape(skeleton: Skeleton) -> GaitShape:
 
 
 @inner_kernel
-def _cadence(forward: float, lateral: float, turn: float, climb: float) -> float:
-    """Strides per second, not yet resting at standstill; more where it is so steep that steps would climb too far."""
-    side, spin = _LATERAL * lateral, _TURN * turn
-    ahead = forward if forward >= 0.0 else _BACK * forward
-    relative = (ahead * ahead + side * side + spin * spin) / _STATURE**2
-    return float(max(_CADENCE * (relative + _SLOW) ** 0.285, abs(climb) / (2.0 * _RISE_OF_STEP)))
-
-
-@inner_kernel
-def _quickness(scale: float) -> float:
-    return float(scale**-_PACE)
-
-
-@kernel
-def quickness(scale: float) -> float:
-    """How many strides a body with legs of this `scale` takes for one of an average adult at the same speed.
-
-    Cadence grows with (speed / stature)^0.57 (Grieve & Gear), so at one speed it falls with stature^0.57.
-    """
-    return _quickness(scale)
-
-
-def phase_rate(forward: float, lateral: float, turn: float) -> float:
-    """Strides per second of an average adult for root velocities in m/s and rad/s; 0 at standstill; see `quickness`.
-
-    D. W. Grieve & R. J. Gear, "The relationships between length of stride, step frequency, time of swing and speed of
-    walking for children and adults", Ergonomics 9 (1966): cadence 64.8 (speed / stature)^0.57 strides a minute.
-    """
-    return climbing_rate(forward, lateral, turn, 0.0)
-
-
-@kernel
-def climbing_rate(forward: float, lateral: float, turn: float, climb: float) -> float:
-    """`phase_rate` of who also goes up or down at `climb` m/s: on stairs steps are short and quick, a tread each."""
-    if abs(forward) + abs(lateral) + abs(turn) < _STILL:
-        return 0.0
-    return _cadence(forward, lateral, turn, climb)
-
-
-@kernel
-def stride_length(speed: float) -> float:
-    """Length in metres of an average adult's stride (two steps), walking forward at `speed` m/s; see `quickness`."""
-    return abs(speed) / _cadence(abs(speed), 0.0, 0.0, 0.0)
-
-
-@helper
-def _stance_part(speed: float, stride: float, scale: float) -> float:
-    """The part of the cycle that a foot stands: less at speed, and where strides of this length outgrow the legs."""
-    duty = _DUTY - _DUTY_LOSS * speed / np.sqrt(scale)
-    return float(duty * (1.0 + (duty / _REACH * stride / (STANDARD_LEG * scale)) ** 12) ** (-1.0 / 12.0))
-
-
-@inner_kernel
-def _smooth(x: float) -> float:
+def smooth(x: float) -> float:
     """Smoothstep, 0 below 0 and 1 above 1."""
     t = min(max(x, 0.0), 1.0)
     return float(t * t * (3.0 - 2.0 * t))
@@ -152,7 +78,7 @@ def _pitch_ahead(u: float, duty: float) -> float:
     if u < duty:
         x = min(max((u / duty - _RISE) / (1.0 - _RISE), 0.0), 1.0)
         rise = x**_ROLL * (1.0 + (_ROLL - _ROLLING) * (1.0 - x))
-        return float(_TOE_OFF * rise - _HEEL_STRIKE * (1.0 - _smooth(u / (_FLAT * duty))))
+        return float(_TOE_OFF * rise - _HEEL_STRIKE * (1.0 - smooth(u / (_FLAT * duty))))
     rolling = _TOE_OFF * _ROLLING / (duty * (1.0 - _RISE)) * (1.0 - duty)
     return _hermite(_TOE_OFF, rolling, -_HEEL_STRIKE, 0.0, (u - duty) / (1.0 - duty))
 
@@ -162,8 +88,8 @@ def _pitch_back(u: float, duty: float) -> float:
     """Foot pitch when walking backward: toes first, then the flat foot, heel last."""
     strike, lift = 0.37, -0.19
     if u < duty:
-        return strike * (1.0 - _smooth(u / (0.3 * duty))) + lift * _smooth((u - 0.7 * duty) / (0.3 * duty))
-    return lift + (strike - lift) * _smooth((u - duty) / (1.0 - duty))
+        return strike * (1.0 - smooth(u / (0.3 * duty))) + lift * smooth((u - 0.7 * duty) / (0.3 * duty))
+    return lift + (strike - lift) * smooth((u - duty) / (1.0 - duty))
 
 
 @inner_kernel
@@ -179,44 +105,6 @@ def _foot_on_ground(
     px = x - lateral * along - forward * across
     pz = z + lateral * across - forward * along
     return px * np.cos(angle) - pz * np.sin(angle), px * np.sin(angle) + pz * np.cos(angle)
-
-
-class Stride(NamedTuple):
-    """What a root's velocities make of the cycle."""
-
-    forward: float
-    lateral: float
-    turn: float
-    speed: float
-    period: float  # seconds
-    duty: float  # stance part of the cycle
-    ahead: float  # how long the stride is, 1.25 at most; negative: backward
-    aside: float  # a quarter of the way to the left in a stride, for a standard leg, metres
-    effort: float  # 0 at rest, 1 for long strides
-    scale: float
-
-
-@kernel
-def _stride(scale: float, forward: float, lateral: float, turn: float, climb: float) -> Stride:
-    period = 1.0 / (_quickness(scale) * _cadence(forward, lateral, turn, climb))
-    speed = np.sqrt(forward * forward + lateral * lateral)
-    duty = _stance_part(speed, speed * period, scale)
-    ahead = min(max(forward * period / (_STEP * scale), -_LONGEST), _LONGEST)
-    travel = (speed + 0.25 * scale * abs(turn)) * period / (0.6 * scale)
-    effort = travel * travel / (0.5 + travel * travel)
-    return Stride(forward, lateral, turn, speed, period, duty, ahead, 0.25 * lateral * period / scale, effort, scale)
-
-
-@kernel
-def stride_of(scale: float, forward: float, lateral: float, turn: float) -> Stride:
-    """What root velocities in m/s and rad/s make of the cycle of a body with legs of this `scale`, on the level."""
-    return _stride(scale, forward, lateral, turn, 0.0)
-
-
-@inner_kernel
-def stride_at(scale: float, root: Floats) -> Stride:
-    """What a root state (7 or more,) makes of it, by its velocities and by how fast it climbs where it tells."""
-    return _stride(scale, root[3], root[4], root[5], root[_CLIMB] if root.shape[0] > _CLIMB else 0.0)
 
 
 @kernel
@@ -336,7 +224,7 @@ def _bob(stride: Stride, phase: float) -> float:
 @helper
 def _highest(legs: Floats, stride: Stride, foot: Floats) -> float:
     """How far the hips are below T-pose where they are highest, so that feet reach the ground; `foot` is scratch."""
-    stretch = _STRETCH + (_STRIDE_STRETCH - _STRETCH) * _smooth(stride.speed / stride.scale)
+    stretch = _STRETCH + (_STRIDE_STRETCH - _STRETCH) * smooth(stride.speed / stride.scale)
     low = 0.0
     for side in range(2):
         for u in (0.0, 0.5 * stride.duty, 0.7 * stride.duty, 0.85 * stride.duty, stride.duty * (1.0 - 1e-9), 0.96):
@@ -353,13 +241,13 @@ def walk_into(legs: Floats, scale: float, roots: Floats, feet: Floats, drops: Fl
 
     `scratch` (6,) is a foot's.
     """
-    stride, low, wanted, climb = _stride(scale, 0.0, 0.0, 0.0, 0.0), -1.0, feet.shape[0] > 0, 0.0
+    stride, low, wanted, climb = climbing_stride(scale, 0.0, 0.0, 0.0, 0.0), -1.0, feet.shape[0] > 0, 0.0
     for n in range(len(roots)):
         forward, lateral, turn, phase = roots[n, 3], roots[n, 4], roots[n, 5], roots[n, 6]
-        climbs = roots[n, _CLIMB] if roots.shape[1] > _CLIMB else 0.0
+        climbs = roots[n, CLIMB] if roots.shape[1] > CLIMB else 0.0
         same = forward == stride.forward and lateral == stride.lateral and turn == stride.turn and climbs == climb
         if low < 0.0 or not same:
-            stride, climb = _stride(scale, forward, lateral, turn, climbs), climbs
+            stride, climb = climbing_stride(scale, forward, lateral, turn, climbs), climbs
             low = _highest(legs, stride, scratch)
         if wanted:
             for side in range(2):
@@ -380,20 +268,6 @@ def foot_poses(legs: Floats, scale: float, roots: Floats) -> tuple[Floats, Float
     return feet, drops
 
 
-@brief_kernel
-def feet_standing(scale: float, roots: Floats) -> Bools:
-    """Which feet (N, 2), left and right, stand on the ground at root states (N, 7); both do where the root rests."""
-    standing = np.empty((len(roots), 2), np.bool_)
-    for n in range(len(roots)):
-        forward, lateral, turn, phase = roots[n, 3], roots[n, 4], roots[n, 5], roots[n, 6]
-        duty = stride_at(scale, roots[n]).duty
-        rests = abs(forward) + abs(lateral) + abs(turn) < _STILL
-        for side in range(2):
-            cycle = phase + 0.5 * side
-            standing[n, side] = rests or cycle - np.floor(cycle) < duty
-    return standing
-
-
 @inner_kernel
 def stood_places(legs: Floats, scale: float, root: Floats, side: int, out: Floats) -> float:
     """Where a foot stands or stood last, and where it stands next if the root keeps its velocities; how far it is.
@@ -412,30 +286,3 @@ def stood_places(legs: Floats, scale: float, root: Floats, side: int, out: Float
         out[at], out[at + 1] = _foot_on_ground(x, z, time, stride.forward, stride.lateral, stride.turn)
         out[at + 2] = -stride.turn * time
     return float(max(u - stride.duty, 0.0) / (1.0 - stride.duty))
-
-
-@inner_kernel
-def hips_lean(lowering: float) -> float:
-    """How far lowered hips lean forward, radians."""
-    return _LEAN * _smooth(lowering / _LEANING)
-
-
-@inner_kernel
-def hips_sink(half_leg: float, drop: float, lowering: float) -> tuple[float, float, float]:
-    """One row of `hips_sinks`."""
-    lowered = half_leg * lowering
-    return drop + lowered, _SETBACK * lowered, hips_lean(lowering)
-
-
-@kernel
-def hips_sinks(half_leg: float, drops: Floats, lowerings: Floats) -> Floats:
-    """How far the hips are below and behind their place in T-pose, metres, and lean forward, radians (N, 3).
-
-    `drops` (N,) are those of `foot_poses`, `lowerings` (N,) the part of a configuration. Hips go back as they go down,
-    as in every squat: the body's weight stays over the feet, and the shins within the reach of the ankles. They lean
-    about the middle between the joints of the legs.
-    """
-    sinks = np.empty((len(drops), 3))
-    for n in range(len(drops)):
-        sinks[n, 0], sinks[n, 1], sinks[n, 2] = hips_sink(half_leg, drops[n], lowerings[n])
-    return sinks

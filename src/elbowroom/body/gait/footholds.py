@@ -11,7 +11,7 @@ steps who turns in place.
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.body.gait.cycle import GaitShape, Stride, home_of, stride_of
+from elbowroom.body.gait.cycle import GaitShape, home_of
 from elbowroom.body.gait.foot_state import SWING, X, Z, carry, is_flat, tilt
 from elbowroom.body.gait.landing_places import Stepper, bound_for, landing_place, place_under
 from elbowroom.body.gait.own_steps import CYCLE, OwnSteps, own_roll, own_stride_at
@@ -26,6 +26,7 @@ from elbowroom.body.gait.stepping_times import (
     time_to_landing,
     urge_to_step,
 )
+from elbowroom.body.gait.stride import Stride, stride_of
 from elbowroom.body.gait.swinging import swing_foot
 from elbowroom.body.root import FOOT, ROOT_STATE, WITH_FEET
 from elbowroom.jit import brief_exact_kernel, brief_kernel, helper, inner_exact_kernel, plain

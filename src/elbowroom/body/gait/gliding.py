@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.body.gait.cycle import GaitShape, flat_place, roll_of, stride_at
+from elbowroom.body.gait.cycle import GaitShape, flat_place, roll_of
 from elbowroom.body.gait.foot_state import (
     FLAT,
     LIFT,
@@ -21,6 +21,7 @@ from elbowroom.body.gait.foot_state import (
     rests,
     tilt,
 )
+from elbowroom.body.gait.stride import stride_at
 from elbowroom.body.root import FOOT, ROOT_STATE, WITH_FEET
 from elbowroom.jit import brief_exact_kernel
 

@@ -5,10 +5,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.body.gait.cycle import Stride
 from elbowroom.body.gait.foot_state import SWING, VELOCITY, YAW, X, Z, rests
 from elbowroom.body.gait.own_steps import OwnSteps, own_detour, own_home, own_stride_at
 from elbowroom.body.gait.roll import straight_part
+from elbowroom.body.gait.stride import Stride
 from elbowroom.body.root import ROOT_STATE
 from elbowroom.by_reference import by_reference
 from elbowroom.jit import inner_exact_kernel

@@ -25,9 +25,10 @@ from elbowroom.body.gait.carriage import (
     TURN,
     UP,
 )
-from elbowroom.body.gait.cycle import GaitShape, Stride, stride_at
+from elbowroom.body.gait.cycle import GaitShape
 from elbowroom.body.gait.manner import PLAIN, Manner
 from elbowroom.body.gait.own_stride import PUBLISHED, OwnStride, carry_as_recorded
+from elbowroom.body.gait.stride import Stride, stride_at
 from elbowroom.body.root import SHOWN, WITH_FEET
 from elbowroom.jit import brief_exact_kernel, helper, inner_exact_kernel
 

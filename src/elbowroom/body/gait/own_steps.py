@@ -11,9 +11,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.body.gait.cycle import Stride, home_of, stride_at
+from elbowroom.body.gait.cycle import home_of
 from elbowroom.body.gait.own_stride import GROWTH, WIDEST
 from elbowroom.body.gait.roll import ahead_part, stepping_roll
+from elbowroom.body.gait.stride import Stride, stride_at
 from elbowroom.by_reference import by_reference
 from elbowroom.jit import helper, inner_kernel, kernel, plain
 

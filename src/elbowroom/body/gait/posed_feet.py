@@ -8,8 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.gait.carriage import carried_hip
-from elbowroom.body.gait.cycle import ease_of, hips_sink, tilt_foot, walk_into
+from elbowroom.body.gait.cycle import ease_of, tilt_foot, walk_into
 from elbowroom.body.gait.foot_state import LIFT, PITCH, SWING, YAW, X, Z
+from elbowroom.body.gait.lowered_hips import hips_sink
 from elbowroom.body.gait.rises import STRETCH, drop_to, is_uneven, raise_foot
 from elbowroom.body.root import FOOT, RISES, ROOT_STATE
 from elbowroom.jit import helper, kernel

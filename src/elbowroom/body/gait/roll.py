@@ -7,7 +7,8 @@ ground, and the foot is lifted soon. Fitted to the published curves at 1.1 and 1
 where `living` carries them. Aside, backward and in turns on the spot feet roll as in the cycle.
 """
 
-from elbowroom.body.gait.cycle import Stride, roll_of
+from elbowroom.body.gait.cycle import roll_of
+from elbowroom.body.gait.stride import Stride
 from elbowroom.jit import helper, inner_kernel
 
 _STRIKE, _FLAT = 0.261, 0.14  # radians, toes up, at heel strike; part of the stance at which the foot is flat

@@ -3,10 +3,11 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.body.gait.cycle import Stride, home_of
+from elbowroom.body.gait.cycle import home_of
 from elbowroom.body.gait.foot_state import SWING, YAW, X, Z, position, rests
 from elbowroom.body.gait.landing_places import TWISTED, worth_a_step
 from elbowroom.body.gait.own_steps import OwnSteps, own_home
+from elbowroom.body.gait.stride import Stride
 from elbowroom.jit import inner_exact_kernel
 
 Floats = NDArray[np.float64]

@@ -3,12 +3,12 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.body.gait.cycle import Stride
 from elbowroom.body.gait.foot_state import LIFT, LIFT_RATE, PITCH, SWING, VELOCITY, YAW, X, Z, land
 from elbowroom.body.gait.landing_places import ALMOST, beside_twin, way_over
 from elbowroom.body.gait.own_steps import OwnSteps, own_detour, own_roll
 from elbowroom.body.gait.roll import least_lift
 from elbowroom.body.gait.stepping_times import TURNING
+from elbowroom.body.gait.stride import Stride
 from elbowroom.jit import helper, inner_exact_kernel
 
 Floats = NDArray[np.float64]

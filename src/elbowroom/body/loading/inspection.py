@@ -8,7 +8,8 @@ import numpy as np
 from elbowroom.body.bones import PARENTS
 from elbowroom.body.fitting.coverage import Coverage, coverage
 from elbowroom.body.fitting.surface import Surface
-from elbowroom.body.gait.cycle import gait_shape, quickness, stride_length
+from elbowroom.body.gait.cycle import gait_shape
+from elbowroom.body.gait.stride import quickness, stride_length
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.loading.avatar_file import load_with_surface
 from elbowroom.body.loading.settings import LoadSettings

@@ -14,8 +14,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from elbowroom.body.capsules import Capsules
 from elbowroom.body.dof import ARMS, DOF, LOCAL_GROUPS, DofGroup, Turning, followers_of
-from elbowroom.body.gait.cycle import GaitShape, foot_poses, gait_shape, hips_sinks
+from elbowroom.body.gait.cycle import GaitShape, foot_poses, gait_shape
 from elbowroom.body.gait.legs import leg_rest
+from elbowroom.body.gait.lowered_hips import hips_sinks
 from elbowroom.body.gait.posed_feet import posed_feet
 from elbowroom.body.gait.rises import raise_feet
 from elbowroom.body.humanoid import Humanoid

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.gait.carriage import about_left, carried_turns, hips_turn, leant_by, shifted_by
-from elbowroom.body.gait.cycle import hips_sink
+from elbowroom.body.gait.lowered_hips import hips_sink
 from elbowroom.body.root import HEIGHT, WITH_FEET
 from elbowroom.by_reference import by_reference
 from elbowroom.jit import brief_kernel, helper, inner_kernel, kernel, plain

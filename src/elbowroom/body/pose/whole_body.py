@@ -10,8 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.dof import LOWERING
-from elbowroom.body.gait.cycle import foot_poses, hips_sinks
+from elbowroom.body.gait.cycle import foot_poses
 from elbowroom.body.gait.legs import leg_rotations
+from elbowroom.body.gait.lowered_hips import hips_sinks
 from elbowroom.body.gait.posed_feet import posed_feet
 from elbowroom.body.gait.rises import raise_feet
 from elbowroom.body.pose import posing

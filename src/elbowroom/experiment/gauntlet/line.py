@@ -6,7 +6,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from elbowroom.body.gait.cycle import phase_rate
+from elbowroom.body.gait.stride import phase_rate
 
 Floats = NDArray[np.float64]
 

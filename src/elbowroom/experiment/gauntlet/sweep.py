@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.dof import DofGroup, followed
-from elbowroom.body.gait.cycle import phase_rate
+from elbowroom.body.gait.stride import phase_rate
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.pose.kinematics import body_model, leg_capsules, pelvis_frames, posture_capsules
 from elbowroom.experiment.gauntlet.body_rows import BodyRows, joined, rows_of

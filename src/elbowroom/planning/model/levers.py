@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from elbowroom.body.dof import LOCAL_GROUPS, LOWERING, DofGroup, columns_of
 from elbowroom.body.gait.carriage import ASIDE, CHEST_TURN, HEAD_TURN, OF_HIPS, POSING, UP
-from elbowroom.body.gait.cycle import STEEPEST, hips_sinks
+from elbowroom.body.gait.lowered_hips import STEEPEST, hips_sinks
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.pose.kinematics import BodyModel, body_model, leg_capsules, lower_body, pelvis_frames
 from elbowroom.body.pose.posing import Column

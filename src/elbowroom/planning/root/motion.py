@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.body.gait.cycle import climbing_rate
+from elbowroom.body.gait.stride import climbing_rate
 from elbowroom.body.root import HEIGHT, RISES
 from elbowroom.by_reference import by_reference
 from elbowroom.jit import exact_kernel, helper, inner_exact_kernel, plain

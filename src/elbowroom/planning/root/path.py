@@ -6,7 +6,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from elbowroom.body.gait.cycle import climbing_rate
+from elbowroom.body.gait.stride import climbing_rate
 from elbowroom.body.root import HEIGHT, RootState
 from elbowroom.jit import exact_kernel, inner_exact_kernel
 

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.dof import DOF
-from elbowroom.body.gait.cycle import quickness
+from elbowroom.body.gait.stride import quickness
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.pose.kinematics import BodyModel, posture_capsules
 from elbowroom.body.root import ROOT_STATE

@@ -11,7 +11,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.body.gait.cycle import quickness, walk_into
+from elbowroom.body.gait.cycle import walk_into
+from elbowroom.body.gait.stride import quickness
 from elbowroom.body.pose.kinematics import BodyModel
 from elbowroom.body.pose.posing import place_pelvis_into
 from elbowroom.body.root import HEIGHT, RISES, ROOT_STATE
