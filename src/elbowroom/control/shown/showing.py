@@ -128,8 +128,7 @@ class Showing:
             return
         posed = before.pose._replace(upper_velocity=np.zeros_like(before.pose.upper))
         clearance = self._clearance_of(posed.root, posed.upper)
-        touches = self._around.check.accompanied and not self._touches_nothing(posed, clearance)
-        if touches or not self._keeps_out_of_itself(posed):
+        if self._around.check.accompanied and not self._touches_nothing(posed, clearance):
             self._retracing.give_up()
             return
         self._retracing.went()
