@@ -10,6 +10,7 @@ from elbowroom.control.plans.wayfinder import Wayfinder
 from elbowroom.control.settings import ControlSettings
 from elbowroom.control.shown.body_check import BodyCheck
 from elbowroom.control.shown.own_body_check import own_body_check
+from elbowroom.planning.names import EXACT
 from elbowroom.planning.navigation.navigator import Navigator
 from elbowroom.world.scene import Scene
 
@@ -27,7 +28,8 @@ class PlanningScene:
         self._humanoid, self.scene, self.spare = humanoid, scene, spare
         self.free_map = scene.free_map
         self.check = BodyCheck(humanoid, scene)
-        self.own_body = own_body_check(humanoid, motions)
+        # of other planners what is shown would be held for ever: they do not keep out of their own body
+        self.own_body = own_body_check(humanoid, motions) if settings.planner == EXACT else None
         self.feet = Stepping(humanoid, motions, self.check.soles)
         self.planners = Planners(settings.planner, humanoid, scene, motions)
         self.wayfinder = Wayfinder(settings, self.check, motions, self.planners)

@@ -243,10 +243,15 @@ class Showing:
         return check.leaves_room(frames) and check.free_between(frames)
 
     def _keeps_out_of_itself(self, posed: Playback) -> bool:
-        """Whether no part of the body comes deeper into another than it may, from the pose that is shown on."""
-        check, shown = self._around.check, self._pose
+        """Whether no part of the body comes deeper into another than it may, from the pose that is shown on.
+
+        Of planners that see to that.
+        """
+        check, shown, own_body = self._around.check, self._pose, self._around.own_body
+        if own_body is None:
+            return True
         axes = check.shown_axes(shown.root, shown.upper), check.shown_axes(posed.root, posed.upper)
-        return self._around.own_body.free_between(self._frames_to(posed), axes)
+        return own_body.free_between(self._frames_to(posed), axes)
 
     def _frames_to(self, posed: Playback) -> Frames:
         """What is shown, and the pose that comes next."""
