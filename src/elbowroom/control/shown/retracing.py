@@ -19,7 +19,7 @@ from elbowroom.control.key_frame_queue import Playback
 from elbowroom.planning.stillness import SAME, SAME_TIME, is_still
 from elbowroom.world.ground.ground import STEP
 
-_REMEMBERED = 5.0  # seconds that were shown
+_REMEMBERED = 10.0  # seconds that were shown
 _PATIENCE = 0.5  # seconds in which legs come to a stand, where they can
 _LONG, _ON_THE_WAY = 3.0, 1.2  # seconds in which a way is found, by who steers; by who is on the way to a place
 _BACK = 0.4  # seconds that one goes back at first; each time that this was not enough twice as long
@@ -104,7 +104,7 @@ class Retracing:
         if math.dist((x, z), self._from) > _ELSEWHERE:
             self._from, self._times = (x, z), 0
         self._left, self._spare, self._stays, self._waits = _BACK * 2.0**self._times, 0.0, 0.0, 0.0
-        self._times += 1
+        self._times += self._left < _REMEMBERED
         self._end_where_it_ends()
 
     def before(self, dt: float) -> Past | None:
