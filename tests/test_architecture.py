@@ -34,6 +34,7 @@ FOR_ALL = {
     "by_reference",
     "kernel_cache",
     "kernel_turns",
+    "kernel_library",
     "kernel_bitcode",
     "kept_kernels",
     "kept_arrays",

@@ -29,13 +29,19 @@ from llvmlite.binding import get_host_cpu_features
 
 from elbowroom.kept_kernels import KeptKernel, name_of
 from elbowroom.kernel_cache import cache_folder, cached_by_sources
+from elbowroom.kernel_library import KernelCompiler
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
 # Without "nnan" and "ninf": kernels may carry infinities as "no obstacle in reach".
 _FASTMATH = {"nsz", "contract", "arcp", "afn", "reassoc"}
 # No kernel is called from C: without the wrapper for that, all compile in a twelfth less time.
-_OPTIONS: dict[str, Any] = {"nogil": True, "error_model": "numpy", "no_cfunc_wrapper": True}
+_OPTIONS: dict[str, Any] = {
+    "nogil": True,
+    "error_model": "numpy",
+    "no_cfunc_wrapper": True,
+    "pipeline_class": KernelCompiler,
+}
 _kernels: list[Any] = []  # all that were made: they last as long as their modules
 
 
@@ -60,7 +66,7 @@ def kernel(function: Function) -> Function:
 
 def exact_kernel(function: Function) -> Function:
     """Compile `function` with strict IEEE arithmetic: for searches and state that must repeat bit for bit."""
-    return _compiled(function)
+    return _compiled(function, fastmath=False)
 
 
 def brief_kernel(function: Function) -> Function:
@@ -70,7 +76,7 @@ def brief_kernel(function: Function) -> Function:
 
 def brief_exact_kernel(function: Function) -> Function:
     """Compile an `exact_kernel` that keeps the interpreter."""
-    return _compiled(function, nogil=False)
+    return _compiled(function, fastmath=False, nogil=False)
 
 
 def inner_kernel(function: Function) -> Function:
@@ -80,7 +86,7 @@ def inner_kernel(function: Function) -> Function:
 
 def inner_exact_kernel(function: Function) -> Function:
     """Compile an `exact_kernel` that other kernels alone call."""
-    return _without_entrance(_compiled(function, no_cpython_wrapper=True))
+    return _without_entrance(_compiled(function, fastmath=False, no_cpython_wrapper=True))
 
 
 def helper(function: Function) -> Function:

@@ -10,24 +10,15 @@ Numba has no option for this. Where a version of it names the module differently
 
 import hashlib
 import os
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
 from llvmlite import ir
-from llvmlite.binding import ModuleRef, parse_assembly, parse_bitcode
+from llvmlite.binding import Linkage, ModuleRef, ValueRef, parse_assembly
 
-
-class UnreadModule:
-    """Stands for a module of LLVM that is read when it is asked for a clone, as who links it does."""
-
-    def __init__(self, file: Path) -> None:
-        self._file = file
-
-    def clone(self) -> ModuleRef:
-        """The module, for whoever takes it in."""
-        return parse_bitcode(self._file.read_bytes())
+from elbowroom.kernel_library import UnreadModule
 
 
 class Bitcode:
@@ -51,7 +42,7 @@ class Bitcode:
             new.replace(file)
         finally:
             new.unlink(missing_ok=True)
-        library._shared_module = _outline(whole)  # type: ignore[union-attr]
+        library._shared_module = _outline(library.get_defined_functions())  # type: ignore[union-attr]
         try:
             yield
         finally:
@@ -66,7 +57,7 @@ class Bitcode:
         if not hasattr(library, "_shared_module"):
             return True
         file = self._file(code)
-        library._shared_module = UnreadModule(file)  # type: ignore[union-attr]
+        library._shared_module = UnreadModule(file.read_bytes)  # type: ignore[union-attr]
         return file.exists()
 
     def _file(self, code: Any) -> Path:
@@ -75,11 +66,11 @@ class Bitcode:
         return self._folder / f"{self._name}.{hashlib.sha256(told.encode()).hexdigest()[:16]}.bc"
 
 
-def _outline(whole: ModuleRef) -> ModuleRef:
+def _outline(functions: Iterable[ValueRef]) -> ModuleRef:
     """A module with functions of the same names that do nothing: by them Numba knows what there is."""
     outline, nothing = ir.Module(), ir.FunctionType(ir.VoidType(), ())
-    for function in whole.functions:
-        if not function.is_declaration:
+    for function in functions:
+        if function.linkage == Linkage.external:
             named = ir.Function(outline, nothing, function.name)
             named.linkage = "linkonce_odr"
             ir.IRBuilder(named.append_basic_block()).ret_void()
