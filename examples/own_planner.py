@@ -46,10 +46,11 @@ def main() -> None:
     for scene in map(er.Scene.load, ("c", "beam")):
         for planner in ("gestures", "exact"):
             controller = er.Controller(er.Humanoid.default(), scene, planner=planner)
-            stuck = False
-            while not (stuck or scene.finished(controller.root)):
-                stuck = controller.step(er.Command(forward=1.0), dt=1 / 60).stuck
-            print(f"{scene.name:5} {planner:9} {'stuck' if stuck else 'through'} at z = {controller.root.z:.1f} m")
+            for _ in range(60 * 60):  # frames: a minute at most
+                if controller.step(er.Command(forward=1.0), dt=1 / 60).stuck or scene.finished(controller.root):
+                    break
+            outcome = "through" if scene.finished(controller.root) else "stuck"
+            print(f"{scene.name:5} {planner:9} {outcome} at z = {controller.root.z:.1f} m")
 
 
 if __name__ == "__main__":
