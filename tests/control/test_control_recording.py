@@ -3,6 +3,7 @@
 import json
 import struct
 import zlib
+from dataclasses import fields
 from pathlib import Path
 
 import numpy as np
@@ -19,6 +20,7 @@ from elbowroom.clips.swing import KEYS, Swing
 from elbowroom.control.controller import Controller
 from elbowroom.control.plans.lookahead import Lookahead
 from elbowroom.control.recordings import recording as recordings
+from elbowroom.control.recordings.recorded_ways import way_from
 from elbowroom.control.recordings.recording import (
     MAGIC,
     STEP,
@@ -73,6 +75,19 @@ def test_steps_come_back_bit_for_bit(run: tuple[Path, list[tuple[Command, float,
         assert command_of(step) == command
         assert step["dt"] == dt
         assert step["q"].tobytes() == q.tobytes()
+
+
+def test_all_that_a_command_says_is_kept(tmp_path: Path) -> None:
+    told = Command(0.5, -0.25, 0.125, 0.75, True, ((0.0, 1.0), (2.0, 3.0)), led=True, may_climb=False)
+    assert all(getattr(told, field.name) != getattr(Command(), field.name) for field in fields(Command))
+    controller, path = Controller(HUMANOID, Scene.load("empty"), seed=3), tmp_path / "told.elbow"
+    with Recorder(path, controller) as recorder:
+        for command in (told, Command()):
+            recorder.append(command, 0.0, controller.step(command, 0.0))
+    recording = Recording(path)
+    (first, last), ways = recording.steps(), recording.ways
+    assert command_of(first, way := way_from(ways, 0, ())) == told
+    assert command_of(last, way_from(ways, 1, way)) == Command()
 
 
 def test_the_header_tells_what_the_run_depends_on(run: tuple[Path, object]) -> None:

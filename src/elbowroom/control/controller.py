@@ -292,7 +292,8 @@ class Controller:
             return command
         shown, free_map = self._shown, self._around.free_map
         body = self._check.body(shown.root, shown.upper)
-        return way_made(self._walker(), float(shown.root[2]), body, self.others, free_map)
+        aside = way_made(self._walker(), float(shown.root[2]), body, self.others, free_map)
+        return replace(aside, led=command.led, may_climb=command.may_climb)
 
     def _turn(self, command: Command, dt: float) -> Phase:
         self._move_things(dt)
@@ -305,7 +306,7 @@ class Controller:
             self._plan(command, at_once=flow is Phase.RESET or changed(self._command, command))
         self._play(dt)
         if self._is_stuck(command):
-            self._showing.wait(dt, on_the_way=self._going is not None)
+            self._showing.wait(dt, on_the_way=command.led)
         return flow
 
     def _move_things(self, dt: float) -> None:
@@ -348,8 +349,7 @@ class Controller:
         if self._showing.holding.active and self.assist:
             held = Held(start.root, start.upper, self._showing.holding.stance, self._showing.clearance)
         reserve = 0 if self._errands.immediate else round(_RESERVE / settings.interval)
-        may_climb = self._going is None or self._going.way.climbs
-        answer = partial(self._grounds.answer, climbs=self._climbs, may_climb=may_climb)
+        answer = partial(self._grounds.answer, climbs=self._climbs, may_climb=command.may_climb)
         self._errands.ask(Question(query, self.assist, held, reserve), answer, self._queue)
         self._take_plan(command)
 

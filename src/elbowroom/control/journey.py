@@ -71,6 +71,10 @@ class Journey:
 
     def command(self, root: RootState, dt: float, *, stuck: bool, plans: int) -> Command:
         """What to do for the next `dt` seconds; `stuck` is what the last frame said, after so many `plans` in all."""
+        found = self._next(root, dt, stuck=stuck, plans=plans)
+        return replace(found, led=True, may_climb=self.way.climbs) if self.walking else found
+
+    def _next(self, root: RootState, dt: float, *, stuck: bool, plans: int) -> Command:
         here = float(root.x), float(root.height), float(root.z)
         away = apart(here, self.goal)
         if away < _THERE:

@@ -28,6 +28,8 @@ class Command:
     direction: float | None = None  # where to in the world; then `forward` is the wanted share of full speed
     run: bool = False  # faster
     way: tuple[tuple[float, float], ...] = ()  # the corners (x, z) of a way, both ends included
+    led: bool = False  # to a place, by who knows the way there
+    may_climb: bool = True  # over what is too high for a step, where there is no other way
 
     @property
     def idle(self) -> bool:

@@ -84,6 +84,7 @@ _PLACES = {
     _MAGIC_1: _Q_1,
 }
 RUN, STUCK, TOUCHING, ASSIST, RESTART = 1, 2, 4, 8, 16  # RESTART: `Controller.reset` was called before this step
+LED, LEVEL = 32, 64  # of a command: led to a place; it may not climb
 _PHASES = tuple(Phase)
 _SAID = 200  # characters of what a header says that are repeated in a message
 
@@ -175,7 +176,7 @@ class StepWriter:
         """Keep one step: what was asked, and the frame that `Controller.step` gave for it."""
         flags = (
             RUN * command.run | STUCK * frame.stuck | TOUCHING * frame.touching | ASSIST * assist | RESTART * restart
-        )
+        ) | (LED * command.led | LEVEL * (not command.may_climb))
         direction = np.nan if command.direction is None else command.direction
         wish = (command.forward, command.strafe, command.turn, direction, dt)
         root = np.zeros(SHOWN)
@@ -394,4 +395,5 @@ def command_of(step: Any, way: Corners = ()) -> Command:
     """The command of one `STEP` record, and of the way that it names."""
     direction = None if np.isnan(step["direction"]) else float(step["direction"])
     forward, strafe, turn = float(step["forward"]), float(step["strafe"]), float(step["turn"])
-    return Command(forward, strafe, turn, direction, bool(step["flags"] & RUN), way)
+    run, led, level = (bool(step["flags"] & flag) for flag in (RUN, LED, LEVEL))
+    return Command(forward, strafe, turn, direction, run, way, led, not level)

@@ -132,7 +132,7 @@ class Walk:
         """Go on by `dt` seconds; the seconds that the crossing took if the finish was passed just now."""
         was_stuck, paced = self.frame.stuck, at_speed(command, self.settings.walk_speed)
         self.frame = self._controller.step(paced, dt)
-        self._log.add(paced, dt, self.frame, assist=self._controller.assist)
+        self._log.add(self.frame.command, dt, self.frame, assist=self._controller.assist)
         if self.frame.stuck and not was_stuck:
             self.stuck_times += 1
             self._stuck_since_start += 1

@@ -61,7 +61,7 @@ class WalkLog:
         return self._file.getvalue() + end
 
     def _is_more_of(self, last: _Step, step: _Step) -> bool:
-        stands = last.command.idle and step.command.idle and last.assist == step.assist
+        stands = last.command.idle and step.command == last.command and last.assist == step.assist
         if not stands or len(self._controller.things) or last.dt + step.dt > _LONGEST:
             return False
         frame, other = last.frame, step.frame
