@@ -5,7 +5,7 @@ and reads both whenever the kernel is first called. Reading it takes longer than
 of the file; a program that compiles nothing has no use for it. So Numba is handed a module that only names the
 functions of the kernel, and the bitcode lies beside.
 
-Numba has no option for this. Where a version of it names the module differently all is as it was, and larger.
+Numba has no option for this.
 """
 
 import hashlib

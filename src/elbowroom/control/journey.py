@@ -75,6 +75,7 @@ class Journey:
         return replace(found, led=True, may_climb=self.way.climbs) if self.walking else found
 
     def _next(self, root: RootState, dt: float, *, stuck: bool, plans: int) -> Command:
+        """The same, as somebody would steer."""
         here = float(root.x), float(root.height), float(root.z)
         away = apart(here, self.goal)
         if away < _THERE:

@@ -84,7 +84,7 @@ _PLACES = {
     _MAGIC_1: _Q_1,
 }
 RUN, STUCK, TOUCHING, ASSIST, RESTART = 1, 2, 4, 8, 16  # RESTART: `Controller.reset` was called before this step
-LED, LEVEL = 32, 64  # of a command: led to a place; it may not climb
+LED, LEVEL = 32, 64  # who goes on is led to a place; who stays on the level may not climb
 _PHASES = tuple(Phase)
 _SAID = 200  # characters of what a header says that are repeated in a message
 
