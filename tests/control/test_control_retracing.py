@@ -8,7 +8,8 @@ import pytest
 from numpy.typing import NDArray
 
 from elbowroom.body.dof import LOCAL
-from elbowroom.body.root import RISES, ROOT_STATE
+from elbowroom.body.gait.foot_state import SWING
+from elbowroom.body.root import RISES, ROOT_STATE, SHOWN
 from elbowroom.control.key_frame_queue import Playback
 from elbowroom.control.shown.retracing import Past, Retracing
 
@@ -17,7 +18,7 @@ UPPER = np.zeros(LOCAL)
 
 
 def pose(along: float, speed: float = 0.5) -> Playback:
-    root: NDArray[np.float64] = np.zeros(ROOT_STATE)
+    root: NDArray[np.float64] = np.zeros(SHOWN)
     root[1], root[3] = along, speed
     return Playback(root, UPPER, UPPER)
 
@@ -77,8 +78,9 @@ def dithered(retracing: Retracing, last: Playback, seconds: float) -> Playback:
 
 def test_who_dithers_where_he_finds_no_way_still_knows_how_he_came() -> None:
     retracing, poses = walked(200)
-    place = float(poses[-1].root[1])
+    place = float(poses[-1].root[1]) + 0.01
     stands = pose(place, 0.0)
+    stands.root[ROOT_STATE + SWING] = 0.2  # what a foot will do next poses nothing
     retracing.show(Past(poses[-1], DT), stands)
     last = dithered(retracing, stands, 12.0)
     for _ in range(60 * 4):

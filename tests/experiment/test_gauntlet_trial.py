@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
+from elbowroom.body.root import RootState
 from elbowroom.cli.main import app
 from elbowroom.control.controller import Controller
 from elbowroom.control.frame import Frame
@@ -17,6 +18,7 @@ from elbowroom.control.shown.body_check import BodyCheck
 from elbowroom.errors import InputError
 from elbowroom.experiment.gauntlet.course import Course, NoCourseError
 from elbowroom.experiment.gauntlet.runner import run_gauntlet
+from elbowroom.experiment.gauntlet.scenes import course_user
 from elbowroom.experiment.gauntlet.settings import GauntletSettings
 from elbowroom.experiment.gauntlet.summary import GauntletSummary
 from elbowroom.experiment.gauntlet.sweep import STEERING
@@ -182,3 +184,14 @@ def test_arms_pass_thin_boards_that_hide_between_two_key_times() -> None:
     result = walk_course(controller_on(stock()[0], made, TrialSettings()), made)
     assert result.stuck_times == 0
     assert result.touching_frames == 0
+
+
+def test_who_walks_a_course_by_its_name_follows_its_line() -> None:
+    line, user = course(3, 5).line, course_user("gauntlet:3:5", 0)
+    assert user is not None
+    for way in np.arange(0.0, line.length - 1.0, 0.2):
+        (x, z), heading = line.points(way), float(line.heading(way))
+        asked = user(RootState(float(x), float(z), heading=heading), False, 1 / 60)
+    assert abs(heading) > 0.2, "this course has no bend"
+    assert asked.direction == pytest.approx(heading, abs=0.05)
+    assert course_user("a", 0) is None

@@ -1,5 +1,6 @@
 """A walk that goes on as planned: what is kept of a plan, what its new end is like, and when all is planned anew."""
 
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -12,6 +13,7 @@ from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.pose.kinematics import body_model, posture_capsules
 from elbowroom.body.root import RootState
 from elbowroom.planning.command import Command
+from elbowroom.planning.exact.plan.new_plan import NewPlan
 from elbowroom.planning.exact.planner import ExactPlanner
 from elbowroom.planning.exact.settings import ExactSettings
 from elbowroom.planning.goal import natural_walk
@@ -150,3 +152,19 @@ def test_while_something_moves_every_plan_is_new(humanoid: Humanoid, posts: Scen
         motion = planner.plan_motion(roots, query)
         assert motion.local.nodes > 0
         query = after(query, motion)
+
+
+@pytest.mark.parametrize(("bent", "kept"), [(10.0, True), (25.0, False)])
+def test_a_hand_that_turns_a_little_stops_nobody_who_has_a_way(
+    bent: float, kept: bool, humanoid: Humanoid, posts: Scene, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Where what it means now leads nowhere one goes on as planned before."""
+    planner, roots = ExactPlanner(humanoid, posts), RootPlanner(humanoid, posts)
+    query = first_query(Command(forward=1.0, direction=0.0))
+    known = planner.plan_motion(roots, query)
+    made = NewPlan.made
+    monkeypatch.setattr(NewPlan, "made", lambda self, left: made(self, left)._replace(leads_on=False))
+    turned = after(query, known)._replace(command=Command(forward=1.0, direction=math.radians(bent)))
+    motion = planner.plan_motion(roots, turned)
+    same = np.allclose(motion.root.path.states[:LONG], known.root.path.states[1:], atol=1e-9)
+    assert same == kept

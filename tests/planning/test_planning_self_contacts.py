@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from elbowroom.body.dof import LOCAL, DofGroup, columns_of
+from elbowroom.body.dof import LOCAL, SEARCH_ORDER, DofGroup, columns_of
 from elbowroom.body.fitting.proportions import proportional_humanoid
 from elbowroom.body.pose.kinematics import body_model
 from elbowroom.body.root import ROOT_STATE
@@ -13,15 +13,19 @@ from elbowroom.planning.exact.memory.previous_plan import StartState
 from elbowroom.planning.exact.plan import upper_body
 from elbowroom.planning.exact.plan.upper_body import UpperBodyPlanner
 from elbowroom.planning.exact.settings import ExactSettings
+from elbowroom.planning.exact.sweep.own_motion import OwnMotion
 from elbowroom.planning.goal import natural_walk
 from elbowroom.planning.interpolation import hermite
 from elbowroom.planning.model.self_pairs import self_clearances, self_pairs
 from elbowroom.planning.narrow.places import NarrowPlaces
+from elbowroom.planning.result import PlanStatus
 from elbowroom.planning.root.path import RootPath
 from elbowroom.world.scene import Scene
 
 Floats = NDArray[np.float64]
+Longs = NDArray[np.int64]
 
+STEP = 0.15  # seconds between key frames
 WAIST, ARM = np.array([0.1, 0.0, 0.0]), np.array([0.5, 0.2, 0.0, 1.0])
 
 
@@ -73,3 +77,22 @@ def test_a_body_that_would_like_to_run_into_itself_does_not(group: DofGroup, mon
     moments = np.linspace(0.0, times[-1], 8 * count + 1)
     shown = np.array([hermite(times, plan.configurations, plan.velocities, moment)[0] for moment in moments])
     assert least(shown, path.sample(moments)) >= 0.0
+
+
+def test_all_places_where_a_motion_runs_into_the_body_are_ruled_out_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Here the body is wherever the arm swings: one place after the other would take as many motions as intervals."""
+    arm, scene = columns_of(DofGroup.RIGHT_ARM), Scene.load("d")
+    planner = UpperBodyPlanner(proportional_humanoid(1.72), scene, ExactSettings(self_rounds=2))
+    path = RootPath(0.0, STEP, np.tile(scene.start.as_array(), (13, 1)))
+    swung, motions = natural_walk()(path)[:, arm], list[int]()
+
+    def contacts(_: OwnMotion, path: RootPath, keys: Floats, rates: Floats, walk: Floats, ahead: int) -> Longs:
+        near = np.linalg.norm(keys[1:, arm] - swung[1:], axis=1) < 0.1
+        near[:2] = False
+        motions.append(int(near.sum()))
+        return np.where(near, SEARCH_ORDER.index(DofGroup.RIGHT_ARM), -1)
+
+    monkeypatch.setattr(OwnMotion, "contacts", contacts)
+    plan = planner.plan(path, StartState(natural_walk()(path)[0], np.zeros(LOCAL))).plan
+    assert plan.status is PlanStatus.FOUND
+    assert motions == [10, 0]

@@ -70,8 +70,8 @@ def walk(
 ) -> None:
     """Walk an avatar through a scene, faster than real time, and print how it went.
 
-    A scripted user walks forward, and when stuck backs up and tries again; with --to the avatar finds its way to a
-    place. Exit code 0: through, or there, in time, 1: not.
+    A scripted user walks forward, along its line through a course, and when stuck backs up and tries again; with --to
+    the avatar finds its way to a place. Exit code 0: through, or there, in time, 1: not.
     """
     check_vmc(vmc, vmc_root)
     target = None if to is None else place_of(to, "--to")
@@ -106,10 +106,11 @@ def _walked(
 ) -> "Leg | CrossingResult":
     """Walk to the target, or across the scene without one."""
     from elbowroom.experiment.crossing import run_crossing
+    from elbowroom.experiment.gauntlet.scenes import course_user
     from elbowroom.experiment.tour.leg import walk_to
 
     if target is None:
-        return run_crossing(controller, settings, listener)
+        return run_crossing(controller, settings, listener, course_user(controller.scene.name, settings.seed))
     return walk_to(controller, target, settings.limit, listener)[0]
 
 

@@ -26,6 +26,7 @@ from elbowroom.world.scene import Scene
 
 Floats = NDArray[np.float64]
 Listener = Callable[[Command, float, Frame], None]
+User = Callable[[RootState, bool, float], Command]  # the command for so many seconds, where the avatar is, stuck or not
 
 DT = 1 / 60  # seconds of a frame
 _SIDEWAYS = 0.02  # metres, the start is drawn within this to either side
@@ -107,11 +108,20 @@ def warm_up(controller: Controller) -> None:
         rehearse(controller.humanoid)
 
 
+def user_of(seed: int) -> User:
+    """The scripted user of a trial, who walks straight on."""
+    user = ScriptedUser(np.random.default_rng([seed, 2]))
+    return lambda _root, stuck, dt: user.command(stuck, dt)
+
+
 def run_crossing(
-    controller: Controller, settings: CrossingSettings, listener: Listener | None = None
+    controller: Controller,
+    settings: CrossingSettings,
+    listener: Listener | None = None,
+    user: User | None = None,
 ) -> CrossingResult:
-    """Let the scripted user steer until the finish or the time limit; `listener` hears of every step."""
-    return run_timed_crossing(controller, settings, listener)[0]
+    """Let the scripted user, or another, steer until the finish or the time limit; `listener` hears of every step."""
+    return run_timed_crossing(controller, settings, listener, user=user)[0]
 
 
 def run_timed_crossing(
@@ -119,13 +129,14 @@ def run_timed_crossing(
     settings: CrossingSettings,
     listener: Listener | None = None,
     desk: BesideDesk | None = None,
+    user: User | None = None,
 ) -> tuple[CrossingResult, CrossingTimes]:
     """`run_crossing`, and the cost of every single frame; plans that were made at `desk` cost none."""
-    user = ScriptedUser(np.random.default_rng([settings.seed, 2]))
+    user = user or user_of(settings.seed)
     ledger, speed = _Ledger(), controller.motions.style.speed
     frame = controller.step(Command(), 0.0)
     while frame.time < settings.limit - 0.5 * DT and not controller.scene.finished(controller.root):
-        command = at_speed(user.command(frame.stuck, DT), speed)
+        command = at_speed(user(controller.root, frame.stuck, DT), speed)
         began, planned = time.perf_counter(), 0.0 if desk is None else desk.spent
         frame = controller.step(command, DT)
         cost = time.perf_counter() - began

@@ -14,7 +14,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from elbowroom.body.root import RISES, ROOT_STATE, SHOWN
+from elbowroom.body.gait.carriage import POSING
+from elbowroom.body.gait.foot_state import SWING
+from elbowroom.body.root import FOOT, HEIGHT, RISES, ROOT_STATE, WITH_FEET
 from elbowroom.control.key_frame_queue import Playback
 from elbowroom.planning.stillness import SAME, SAME_TIME, is_still
 from elbowroom.world.ground.ground import STEP
@@ -26,6 +28,12 @@ _BACK = 0.4  # seconds that one goes back at first; each time that this was not 
 _HERE = 0.005  # metres, radians: who has moved no farther is where he was
 _ELSEWHERE = 0.5  # metres from where one has gone back from
 _DITHERED = 1.0  # seconds on one spot that are remembered, besides the pose in which one came there
+_POSED = np.r_[
+    [0, 1, 2, HEIGHT],
+    ROOT_STATE : ROOT_STATE + SWING,
+    ROOT_STATE + FOOT : ROOT_STATE + FOOT + SWING,
+    WITH_FEET : WITH_FEET + POSING,
+]  # of a root state as it is shown, what poses the body
 _ARMS = 1.5  # rad/s, metres a second: how fast arms go straight to where they were
 
 
@@ -171,8 +179,8 @@ def _differ(one: Playback, other: Playback) -> bool:
 
 
 def _stand_alike(one: Playback, other: Playback) -> bool:
-    """Whether root and feet are in the same place."""
-    return bool(np.abs(one.root - other.root)[: SHOWN - 1].max() < _HERE)
+    """Whether root, feet and what the hips carry are in the same place, whatever they are about to do."""
+    return bool(np.abs(one.root - other.root)[_POSED].max() < _HERE)
 
 
 def _steps(one: Playback, other: Playback, dt: float) -> int:

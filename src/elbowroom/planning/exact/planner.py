@@ -98,14 +98,16 @@ class ExactPlanner:
     def _anew(self, left: FullPlan | None, root_planner: RootPlanner, query: MotionQuery, *, alone: bool) -> FullPlan:
         """A new plan, and what may be known of it later: an answer to who stands, a walk to go on with.
 
-        `left` is what is left of a walk that has no new end at first sight: it is given up only for what leads on.
-        `alone`: nothing moves or is in a hurry.
+        `left` is what is left of a walk that has no new end at first sight: it is given up only for what leads on, even
+        where a hand that steers wants something a little different. `alone`: nothing moves or is in a hurry.
         """
         memory = self.memory
         hurry = query.hurry or (not is_still(query.root.as_array()[3:6]) and memory.command != query.command)
         memory.command = query.command
         before = root_planner.memory
         whole = NewPlan(self._body, root_planner, query, self._horizon(query, hurry=hurry), hurry).made(left)
+        if left is None and memory.ongoing is not None and not len(root_planner.moving):
+            left = memory.ongoing.left_for_another(query)
         if left is not None and not whole.leads_on and self._is_worth_keeping(left, query):
             root_planner.memory, memory.standing = before, None
             return kept_after(left, whole)

@@ -25,7 +25,7 @@ class ExactSettings:
     quick_rounds: int = 12  # motions that may turn out to touch before a group gives up at first sight
     rounds: int = 16  # motions that may turn out to touch before a group gives up
     guided_rounds: int = 4  # answers of the joint step that may turn out to touch
-    self_rounds: int = 3  # motions that may turn out to run into the body itself
+    self_rounds: int = 6  # motions that may turn out to run into the body itself
     step_weight: float = 1.5  # of changing the distance from the goal, against that distance itself
     near_weight: float = 20.0  # of lacking comfort, for each square metre
     keeping: float = 0.02  # squared radians that another way must be better than the one being followed

@@ -71,14 +71,15 @@ class ChildSearch:
             if failed := self._searched(CHILDREN[first:], paths, guides, evidence_log):
                 return failed
             found = GroupPaths.joined(paths, horizon, self._problem.goals)
-            contact = self._self_contact(found)
-            if contact is None:
+            contacts = self._self_contacts(found)
+            if not contacts:
                 return found
-            number, touching = contact
-            if number == 0:
+            touching, lowest = contacts[0][1], min(number for number, _ in contacts)
+            if lowest == 0:
                 return GroupPaths((), waist, touching)
-            first = number - 1
-            self._remember(paths, number, touching)
+            first = lowest - 1
+            for number, interval in contacts:
+                self._remember(paths, number, interval)
         return GroupPaths(tuple(paths[:-1]), paths[-1], touching)
 
     def _take(self, waist: GroupPath) -> None:
@@ -157,8 +158,8 @@ class ChildSearch:
             posture = paths[number].keys[t].copy()
             self._contacts.append(Contact(SEARCH_ORDER[number], t, around[t], posture))
 
-    def _self_contact(self, found: GroupPaths) -> tuple[int, int] | None:
-        """The group, by its number, and the first interval in which its motion runs into the body, or None."""
+    def _self_contacts(self, found: GroupPaths) -> list[tuple[int, int]]:
+        """The groups, by their number, and the intervals in which their motion runs into the body, in order."""
         problem, keys, rates = self._problem, found.keys, found.velocities
         groups = self._caches.own_motion.contacts(problem.path, keys, rates, problem.walk, problem.begins.ahead)
-        return next(((group, k) for k, group in enumerate(groups.tolist()) if group >= 0), None)
+        return [(group, k) for k, group in enumerate(groups.tolist()) if group >= 0]

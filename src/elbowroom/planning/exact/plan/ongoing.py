@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.jit import exact_kernel
+from elbowroom.planning.command import changed
 from elbowroom.planning.exact.plan.full_plan import FullPlan, later
 from elbowroom.planning.motion import MotionQuery
 from elbowroom.planning.stillness import SAME, SAME_TIME
@@ -21,10 +22,17 @@ class OngoingPlan(NamedTuple):
 
     def left(self, query: MotionQuery) -> FullPlan | None:
         """What is left of it at a later query, if that goes on from where the plan leads, and wants the same."""
+        return self._left(query) if self.query.command == query.command else None
+
+    def left_for_another(self, query: MotionQuery) -> FullPlan | None:
+        """The same where something a little different is wanted."""
+        return None if changed(self.query.command, query.command) else self._left(query)
+
+    def _left(self, query: MotionQuery) -> FullPlan | None:
         known, whole = self.query, self.whole
         at = round((query.time - known.time) / query.interval)
         local = whole.local
-        if known.command != query.command or local.velocities is None:
+        if local.velocities is None:
             return None
         if not 0 <= at < len(local.configurations) or abs(query.time - whole.root.path.time_of(at)) > SAME_TIME:
             return None
