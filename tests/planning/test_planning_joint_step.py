@@ -10,6 +10,7 @@ from elbowroom.body.dof import ARMS, DOF, LOCAL, SEARCH_ORDER, DofGroup, columns
 from elbowroom.body.fitting.proportions import proportional_humanoid
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.pose.kinematics import BodyModel, body_model, posture_capsules
+from elbowroom.planning.exact.certificate.closed_nodes import Closed, SliceNodes
 from elbowroom.planning.exact.joint.step import ALONE, PRODUCT, JointStep
 from elbowroom.planning.exact.memory.previous_plan import StartState
 from elbowroom.planning.exact.plan.upper_body import UpperBodyPlanner
@@ -21,8 +22,9 @@ from elbowroom.planning.model.self_pairs import SelfPairs, carriers_of, self_cle
 from elbowroom.planning.result import BlockadeKind, PlanStatus
 from elbowroom.planning.root.path import RootPath
 from elbowroom.world.obstacles.clearance import clearance
+from elbowroom.world.obstacles.layout import Nearby
 from elbowroom.world.obstacles.obstacles import Obstacles
-from elbowroom.world.obstacles.rows import span_of
+from elbowroom.world.obstacles.rows import count_of, span_of
 from elbowroom.world.scene import Scene
 
 Floats = NDArray[np.float64]
@@ -30,6 +32,11 @@ Rows = tuple[tuple[tuple[float, ...], tuple[float, ...]], ...]
 SETTINGS = ExactSettings(samples_share=0.3)  # few postures: the whole product can be looked at
 AWAY = ((1.4, 1.0, 1.4), (0.1, 0.1, 0.1))
 WALL = (((0.0, 1.5, 1.36), (3.0, 0.65, 0.1)), AWAY)  # legs pass, nobody else does
+BRICKS = (
+    *(((0.25 * i, 1.0 + 0.26 * j, 1.36), (0.125, 0.13, 0.1)) for i in range(-4, 5) for j in range(5)),
+    *(((1.5 + 0.2 * i, 0.6, 0.6 + 0.2 * j), (0.05, 0.05, 0.05)) for i in range(8) for j in range(6)),
+    AWAY,
+)  # of a wall, and what lies about
 PILLARS = (
     ((-0.26, 1.4, 1.4), (0.2, 0.9, 0.2)),
     ((0.26, 1.4, 1.4), (0.2, 0.9, 0.2)),
@@ -192,7 +199,7 @@ def any_triple(humanoid: Humanoid, rows: Rows, path: RootPath, depth: int) -> bo
     return bool(free.any())
 
 
-@pytest.mark.parametrize("rows", [WALL, PILLARS])
+@pytest.mark.parametrize("rows", [WALL, PILLARS, BRICKS])
 def test_the_named_obstacles_close_the_slice_and_each_is_needed(humanoid: Humanoid, rows: Rows) -> None:
     path = walk(10)
     found = dressed(humanoid, scene_of(rows), path).blockade()
@@ -207,6 +214,20 @@ def test_the_named_obstacles_close_the_slice_and_each_is_needed(humanoid: Humano
     for box in named:
         rest = tuple(row for row in named if row is not box)
         assert any_triple(humanoid, (*rest, AWAY), path, depth)
+
+
+def test_hardly_anything_is_asked_of_what_closes_nothing(humanoid: Humanoid, monkeypatch: pytest.MonkeyPatch) -> None:
+    search, asked, closed_by = dressed(humanoid, scene_of(BRICKS), walk(10)), list[int](), SliceNodes.closed_by
+
+    def counted(nodes: SliceNodes, obstacles: Nearby) -> Closed:
+        asked.append(count_of(obstacles))
+        return closed_by(nodes, obstacles)
+
+    monkeypatch.setattr(SliceNodes, "closed_by", counted)
+    named = search.blockade().obstacles
+    assert named
+    assert asked.count(1) < 0.5 * len(BRICKS), "one by one only what closes something"
+    assert sum(asked) < 6 * len(BRICKS)
 
 
 def test_added_postures_open_a_way_and_are_the_same_each_time(humanoid: Humanoid) -> None:

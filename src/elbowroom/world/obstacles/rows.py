@@ -1,6 +1,6 @@
 """Rows of obstacles: made from shapes and poses, moved into frames, bounded, picked out by place."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -43,6 +43,16 @@ def some_of(near: Nearby, chosen: NDArray[np.bool_]) -> Nearby:
     return Nearby(near.rows[chosen], near.packed)
 
 
+def numbered(near: Nearby, numbers: Longs) -> Nearby:
+    """The obstacles of these numbers (N,)."""
+    return Nearby(near.rows[numbers], near.packed)
+
+
+def count_of(near: Nearby) -> int:
+    """The number of obstacles."""
+    return len(near.rows)
+
+
 def first_spans(spans: Spans, count: int) -> Spans:
     """The first spans."""
     return Spans(spans.rows[:count], spans.packed)
@@ -66,11 +76,6 @@ def span_count(spans: Spans) -> int:
 def span_of(spans: Spans, k: int) -> Nearby:
     """The obstacles in one of the spans."""
     return Nearby(spans.rows[k], spans.packed)
-
-
-def each_of(near: Nearby) -> Iterator[Nearby]:
-    """The obstacles one by one."""
-    return (one_of(near, b) for b in range(len(near.rows)))
 
 
 def one_of(near: Nearby, b: int) -> Nearby:

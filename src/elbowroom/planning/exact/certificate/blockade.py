@@ -5,39 +5,44 @@ whether any of them can be reached within the speed limits from what was reached
 path and only the motion between them touches, no obstacles are named.
 """
 
+from collections.abc import Iterator
+
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.planning.exact.certificate.obstacles import SliceContacts, blocking_obstacles
+from elbowroom.planning.exact.certificate.closed_nodes import Closed, SliceNodes
+from elbowroom.planning.exact.certificate.obstacles import blocking_obstacles, contacts_of
 from elbowroom.planning.exact.joint.bounds import Problem
-from elbowroom.planning.exact.joint.clearances import clearances_under
 from elbowroom.planning.exact.joint.reachability import next_triples, reach
 from elbowroom.planning.exact.joint.step import PRODUCT, JointStep
 from elbowroom.planning.result import Blockade, BlockadeKind
 from elbowroom.planning.root.path import RootPath
-from elbowroom.world.obstacles.rows import each_of, span_of
+from elbowroom.world.obstacles.rows import count_of, numbered, span_of
 
 Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
 Indices = NDArray[np.int64]
 
+_FEW = 8  # waists of a slice that are looked at together
+
 
 def blockade(step: JointStep, path: RootPath, depth: int, rows: Indices) -> Blockade:
-    """Why there is no path into the slice at `depth`; `rows` (B,) are its obstacles' numbers."""
-    named, kind = blocking_obstacles(_contacts(step, depth, _possible(step, depth))), BlockadeKind.NO_POSTURE
-    if named is None:
-        for before in range(depth + 1):
-            step.fill(before, np.ones(step.filled.shape[1], np.bool_))
+    """Why there is no path into the slice at `depth`; `rows` (B,) are its obstacles' numbers.
+
+    Where a joint step would not fill in so much, what can be reached is not asked.
+    """
+    named, kind = _named(step, depth, _possible(step, depth)), BlockadeKind.NO_POSTURE
+    if named is None and _fill_until(step, depth):
         problem = _until(step.problem(), depth)
         reached = reach(problem)
         if 0 <= reached.depth < depth:
             depth = reached.depth + 1
             possible = _possible(step, depth)
-            named = blocking_obstacles(_contacts(step, depth, possible))
+            named = _named(step, depth, possible)
             if named is None:
                 kind = BlockadeKind.OUT_OF_REACH
                 near = next_triples(problem, reached.depth, reached.triples)
-                named = blocking_obstacles(_contacts(step, depth, possible & near))
+                named = _named(step, depth, possible & near)
     obstacles = () if named is None else tuple(int(rows[b]) for b in named)
     state = path.states[depth]
     ahead = np.linalg.norm(np.diff(path.states[: depth + 1, :2], axis=0), axis=1).sum()
@@ -48,6 +53,25 @@ def blockade(step: JointStep, path: RootPath, depth: int, rows: Indices) -> Bloc
         float(ahead),
         obstacles,
     )
+
+
+def _fill_until(step: JointStep, depth: int) -> bool:
+    """Fill in the slices up to a depth with all waists; whether that was no more than a joint step does."""
+    for before in range(depth + 1):
+        for waists in _a_few(np.ones(step.filled.shape[1], np.bool_)):
+            if step.checks > step.settings.checks:
+                return False
+            step.fill(before, waists)
+    return True
+
+
+def _a_few(waists: Bools) -> Iterator[Bools]:
+    """Some waists (W,) in parts of a few each."""
+    numbers = np.flatnonzero(waists)
+    for first in range(0, len(numbers), _FEW):
+        part = np.zeros_like(waists)
+        part[numbers[first : first + _FEW]] = True
+        yield part
 
 
 def _possible(step: JointStep, depth: int) -> Bools:
@@ -62,28 +86,29 @@ def _possible(step: JointStep, depth: int) -> Bools:
     return possible
 
 
-def _contacts(step: JointStep, depth: int, candidates: Bools) -> SliceContacts:
-    """Which obstacle closes which node of a slice."""
-    around, waist = step.around, step.nodes[0]
-    obstacles, count = list(each_of(span_of(around.obstacles, depth))), candidates.shape[0]
-    used = candidates.any(axis=(1, 2))
-    pelvis = around.places[depth][None], around.turns[depth][None]
-    chests = step.chests(depth, step.configurations(0, depth))
-    one = np.ones(1, np.bool_)
-    by_waist = np.zeros((len(obstacles), count), np.bool_)
-    by_pair = [np.zeros((len(obstacles), count, step.nodes[g].base.shape[1]), np.bool_) for g in PRODUCT[1:]]
-    for b, obstacle in enumerate(obstacles):
-        clear, _ = clearances_under(step.lanes(0, depth), *pelvis, obstacle, one)
-        by_waist[b] = clear[0, :count] < waist.margins[depth]
-        for g in range(1, len(step.nodes)):
-            child = step.nodes[g]
-            found, _ = clearances_under(step.lanes(g, depth), *chests, obstacle, used & ~by_waist[b])
-            closed = found[:, : child.base.shape[1]] < child.margins[depth]
-            if g in PRODUCT:
-                by_pair[PRODUCT.index(g) - 1][b] = closed
-            else:
-                by_waist[b] |= (closed | ~np.isfinite(child.base[depth])).all(axis=1)
-    return SliceContacts(candidates, by_waist, by_pair[0], by_pair[1])
+def _named(step: JointStep, depth: int, candidates: Bools) -> Indices | None:
+    """The obstacles that close all candidates (W, L, R) of a slice, each of them needed; None where one stays open.
+
+    Most slices are open and most things close nothing. So it is first asked of all things together, under a few waists
+    at a time; then of half of the things, of a quarter, as long as these close anything.
+    """
+    near, used = span_of(step.around.obstacles, depth), np.asarray(candidates.any(axis=(1, 2)))
+    for waists in _a_few(used):
+        together = SliceNodes(step, depth, waists).closed_by(near)
+        if blocking_obstacles(contacts_of(candidates & waists[:, None, None], [together])) is None:
+            return None
+    nodes, halves = SliceNodes(step, depth, used), [np.arange(count_of(near))]
+    numbers, closing = list[int](), list[Closed]()
+    while halves:
+        some = halves.pop()
+        closed = nodes.closed_by(numbered(near, some))
+        if closed.any and len(some) > 1:
+            halves += [some[len(some) // 2 :], some[: len(some) // 2]]
+        elif closed.any:
+            numbers.append(int(some[0]))
+            closing.append(closed)
+    blocking = blocking_obstacles(contacts_of(candidates, closing))
+    return None if blocking is None else np.array(numbers, np.int64)[blocking]
 
 
 def _until(problem: Problem, depth: int) -> Problem:

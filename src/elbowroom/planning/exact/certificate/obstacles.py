@@ -6,12 +6,14 @@ touch each other. A set of obstacles blocks a slice if it closes every candidate
 other while the rest still blocks: what is left is enough, and none of it can be missed.
 """
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.jit import exact_kernel
+from elbowroom.planning.exact.certificate.closed_nodes import Closed
 
 Bools = NDArray[np.bool_]
 Indices = NDArray[np.int64]
@@ -24,6 +26,17 @@ class SliceContacts(NamedTuple):
     waist: Bools  # (B, W)
     left: Bools  # (B, W, L)
     right: Bools  # (B, W, R)
+
+
+def contacts_of(candidates: Bools, closed: Sequence[Closed]) -> SliceContacts:
+    """Candidates (W, L, R), and what each of some obstacles closes."""
+    waists, lefts, rights = candidates.shape
+    return SliceContacts(
+        candidates,
+        np.array([nodes.waist for nodes in closed], np.bool_).reshape(-1, waists),
+        np.array([nodes.left for nodes in closed], np.bool_).reshape(-1, waists, lefts),
+        np.array([nodes.right for nodes in closed], np.bool_).reshape(-1, waists, rights),
+    )
 
 
 @exact_kernel
