@@ -5,8 +5,6 @@ whether any of them can be reached within the speed limits from what was reached
 path and only the motion between them touches, no obstacles are named.
 """
 
-from collections.abc import Iterator
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -14,7 +12,7 @@ from elbowroom.planning.exact.certificate.closed_nodes import Closed, SliceNodes
 from elbowroom.planning.exact.certificate.obstacles import blocking_obstacles, contacts_of
 from elbowroom.planning.exact.joint.bounds import Problem
 from elbowroom.planning.exact.joint.reachability import next_triples, reach
-from elbowroom.planning.exact.joint.step import PRODUCT, JointStep
+from elbowroom.planning.exact.joint.step import PRODUCT, JointStep, a_few
 from elbowroom.planning.result import Blockade, BlockadeKind
 from elbowroom.planning.root.path import RootPath
 from elbowroom.world.obstacles.rows import count_of, numbered, span_of
@@ -22,8 +20,6 @@ from elbowroom.world.obstacles.rows import count_of, numbered, span_of
 Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
 Indices = NDArray[np.int64]
-
-_FEW = 8  # waists of a slice that are looked at together
 
 
 def blockade(step: JointStep, path: RootPath, depth: int, rows: Indices) -> Blockade:
@@ -58,20 +54,11 @@ def blockade(step: JointStep, path: RootPath, depth: int, rows: Indices) -> Bloc
 def _fill_until(step: JointStep, depth: int) -> bool:
     """Fill in the slices up to a depth with all waists; whether that was no more than a joint step does."""
     for before in range(depth + 1):
-        for waists in _a_few(np.ones(step.filled.shape[1], np.bool_)):
+        for waists in a_few(np.ones(step.filled.shape[1], np.bool_)):
             if step.checks > step.settings.checks:
                 return False
             step.fill(before, waists)
     return True
-
-
-def _a_few(waists: Bools) -> Iterator[Bools]:
-    """Some waists (W,) in parts of a few each."""
-    numbers = np.flatnonzero(waists)
-    for first in range(0, len(numbers), _FEW):
-        part = np.zeros_like(waists)
-        part[numbers[first : first + _FEW]] = True
-        yield part
 
 
 def _possible(step: JointStep, depth: int) -> Bools:
@@ -93,7 +80,7 @@ def _named(step: JointStep, depth: int, candidates: Bools) -> Indices | None:
     at a time; then of half of the things, of a quarter, as long as these close anything.
     """
     near, used = span_of(step.around.obstacles, depth), np.asarray(candidates.any(axis=(1, 2)))
-    for waists in _a_few(used):
+    for waists in a_few(used):
         together = SliceNodes(step, depth, waists).closed_by(near)
         if blocking_obstacles(contacts_of(candidates & waists[:, None, None], [together])) is None:
             return None

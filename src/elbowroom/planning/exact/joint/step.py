@@ -7,6 +7,7 @@ product searched again. So the answer is that of all waists, though most were ne
 when all of them were.
 """
 
+from collections.abc import Iterator
 from functools import cached_property
 from typing import NamedTuple
 
@@ -43,6 +44,7 @@ _PAIR = PRODUCT[1:]
 ALONE = tuple(g for g in range(1, len(SEARCH_ORDER)) if g not in PRODUCT)
 _FIRST = 8  # waists of each slice that are filled in at first
 _GROWTH = 3
+_FEW = 8  # waists of a slice that are filled in together
 _ALIKE = 0.1  # radians, of both ends together: edges so near to one that touches are closed with it
 _INFINITE = np.float32(np.inf)
 
@@ -54,7 +56,7 @@ class JointSettings(NamedTuple):
     near: float  # weight of lacking comfort
     comfort: float  # metres
     budget: int = 400_000  # triples settled
-    # No slice more is filled in after so many waists and capsules, or so many triples settled.
+    # No waists more are filled in after so many waists and capsules, or so many triples settled.
     waists: int = 300
     checks: int = 1_000_000
     triples: int = 300_000
@@ -153,12 +155,13 @@ class JointStep:
         for depth in range(len(waists)):
             if depth > 0:
                 alive = [_led_to(edges[depth - 1], here) for edges, here in zip(self._all_edges, alive, strict=True)]
-            self.fill(depth, waists[depth] & alive[0])
+            for some in a_few(waists[depth] & alive[0]):
+                self.fill(depth, some)
+                if self.spent:
+                    return OUT_OF_BUDGET
             alive = [here & open_ for here, open_ in zip(alive, self._open(depth, alive[0]), strict=True)]
             if not all(here.any() for here in alive):
                 return NO_PATH
-            if self.spent:
-                return OUT_OF_BUDGET
         path = joint_path(self.problem(), self.settings.budget - self.states)
         self.states += path.states
         return path
@@ -290,6 +293,15 @@ class JointStep:
         apart[known.shape[0] :] = arm_clearances(own[0], every, between) >= SPARE
         apart[: known.shape[0], known.shape[1] :] = arm_clearances(segments[0], own[1], between) >= SPARE
         return apart
+
+
+def a_few(waists: Bools) -> Iterator[Bools]:
+    """Some waists (W,) in parts of a few each."""
+    numbers = np.flatnonzero(waists)
+    for first in range(0, len(numbers), _FEW):
+        part = np.zeros_like(waists)
+        part[numbers[first : first + _FEW]] = True
+        yield part
 
 
 def _led_to(edges: Floats32, nodes: Bools) -> Bools:
