@@ -168,15 +168,3 @@ def test_a_hand_that_turns_a_little_stops_nobody_who_has_a_way(
     motion = planner.plan_motion(roots, turned)
     same = np.allclose(motion.root.path.states[:LONG], known.root.path.states[1:], atol=1e-9)
     assert same == kept
-
-
-def test_what_was_planned_in_a_hurry_is_gone_on_with(humanoid: Humanoid, posts: Scene) -> None:
-    planner, roots = ExactPlanner(humanoid, posts), RootPlanner(humanoid, posts)
-    query = first_query()._replace(hurry=True)
-    known = planner.plan_motion(roots, query)
-    later = after(query, known)._replace(hurry=False)
-    assert planner.memory.ongoing is not None
-    assert planner.memory.ongoing.left(later) is not None
-    motion, kept = planner.plan_motion(roots, later), LONG - round(SETTINGS.revisited / T)
-    ways = motion.local.configurations, known.local.configurations[1:]
-    assert np.allclose(ways[0][:kept], ways[1][:kept], atol=1e-12)

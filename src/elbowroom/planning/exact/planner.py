@@ -106,8 +106,7 @@ class ExactPlanner:
         memory.command = query.command
         before = root_planner.memory
         whole = NewPlan(self._body, root_planner, query, self._horizon(query, hurry=hurry), hurry).made(left)
-        still = not len(root_planner.moving)
-        if left is None and memory.ongoing is not None and still:
+        if left is None and memory.ongoing is not None and not len(root_planner.moving):
             left = memory.ongoing.left_for_another(query)
         if left is not None and not whole.leads_on and self._is_worth_keeping(left, query):
             root_planner.memory, memory.standing = before, None
@@ -115,7 +114,7 @@ class ExactPlanner:
         known = alone and not hurry and stands(whole, query)
         memory.standing = StandingPlan(query, whole, memory.attempts.thorough) if known else None
         lasts = _is_commanded(whole, root_planner) or whole.leads_on
-        memory.ongoing = OngoingPlan(query, whole) if still and lasts else None
+        memory.ongoing = OngoingPlan(query, whole) if alone and lasts else None
         return whole
 
     def _horizon(self, query: MotionQuery, *, hurry: bool = False) -> int:
