@@ -97,21 +97,22 @@ def walk(
         nullcontext() if record is None else Recorder(record, controller) as recorder,
         stream_to(vmc, vmc_root, bundles=vmc_bundles) or nullcontext() as stream,
     ):
-        outcome = _walked(controller, settings, target, _listener(bar, recorder, stream, humanoid))
+        listener = _listener(bar, recorder, stream, humanoid)
+        outcome = _walked(controller, settings, target or scene, listener)
     raise typer.Exit(0 if _told(outcome, place.name, record, json) else FELL_SHORT)
 
 
 def _walked(
-    controller: "Controller", settings: CrossingSettings, target: "Place | Spot | None", listener: "Listener"
+    controller: "Controller", settings: CrossingSettings, to: "Place | Spot | str", listener: "Listener"
 ) -> "Leg | CrossingResult":
-    """Walk to the target, or across the scene without one."""
+    """Walk to a place, or across the scene of this name, as one steers there."""
     from elbowroom.experiment.crossing import run_crossing
     from elbowroom.experiment.gauntlet.scenes import course_user
     from elbowroom.experiment.tour.leg import walk_to
 
-    if target is None:
-        return run_crossing(controller, settings, listener, course_user(controller.scene.name, settings.seed))
-    return walk_to(controller, target, settings.limit, listener)[0]
+    if isinstance(to, str):
+        return run_crossing(controller, settings, listener, course_user(to, settings.seed))
+    return walk_to(controller, to, settings.limit, listener)[0]
 
 
 def _told(outcome: "Leg | CrossingResult", scene: str, record: Path | None, json: bool) -> bool:

@@ -18,7 +18,7 @@ from elbowroom.experiment.crossing_settings import CrossingSettings
 from elbowroom.experiment.pacing import is_realtime, late_frames
 from elbowroom.experiment.rehearsal import rehearse
 from elbowroom.experiment.replans import Replans
-from elbowroom.experiment.scripted_user import ScriptedUser
+from elbowroom.experiment.scripted_user import ScriptedUser, User
 from elbowroom.planning.command import Command
 from elbowroom.planning.names import EXACT
 from elbowroom.planning.root.pace import at_speed
@@ -26,7 +26,6 @@ from elbowroom.world.scene import Scene
 
 Floats = NDArray[np.float64]
 Listener = Callable[[Command, float, Frame], None]
-User = Callable[[RootState, bool, float], Command]  # the command for so many seconds, where the avatar is, stuck or not
 
 DT = 1 / 60  # seconds of a frame
 _SIDEWAYS = 0.02  # metres, the start is drawn within this to either side
@@ -108,7 +107,7 @@ def warm_up(controller: Controller) -> None:
         rehearse(controller.humanoid)
 
 
-def user_of(seed: int) -> User:
+def _user_of(seed: int) -> User:
     """The scripted user of a trial, who walks straight on."""
     user = ScriptedUser(np.random.default_rng([seed, 2]))
     return lambda _root, stuck, dt: user.command(stuck, dt)
@@ -132,7 +131,7 @@ def run_timed_crossing(
     user: User | None = None,
 ) -> tuple[CrossingResult, CrossingTimes]:
     """`run_crossing`, and the cost of every single frame; plans that were made at `desk` cost none."""
-    user = user or user_of(settings.seed)
+    user = user or _user_of(settings.seed)
     ledger, speed = _Ledger(), controller.motions.style.speed
     frame = controller.step(Command(), 0.0)
     while frame.time < settings.limit - 0.5 * DT and not controller.scene.finished(controller.root):

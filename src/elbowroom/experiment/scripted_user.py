@@ -1,8 +1,13 @@
 """A user who walks forward, and when stuck backs up a little and tries again (paper, section 6.1)."""
 
+from collections.abc import Callable
+
 import numpy as np
 
+from elbowroom.body.root import RootState
 from elbowroom.planning.command import Command
+
+User = Callable[[RootState, bool, float], Command]  # the command for so many seconds, where the avatar is, stuck or not
 
 FORWARD = Command(forward=1.0)
 BACK = Command(forward=-1.0)

@@ -30,7 +30,7 @@ _ELSEWHERE = 0.5  # metres from where one has gone back from
 _DITHERED = 1.0  # seconds on one spot that are remembered, besides the pose in which one came there
 _POSED = np.r_[
     [0, 1, 2, HEIGHT],
-    ROOT_STATE : ROOT_STATE + SWING,
+    RISES : ROOT_STATE + SWING,
     ROOT_STATE + FOOT : ROOT_STATE + FOOT + SWING,
     WITH_FEET : WITH_FEET + POSING,
 ]  # of a root state as it is shown, what poses the body

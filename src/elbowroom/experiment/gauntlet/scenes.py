@@ -6,12 +6,11 @@ from functools import lru_cache
 
 import numpy as np
 
-from elbowroom.body.root import RootState
 from elbowroom.experiment.gauntlet.course import Course, make_course
 from elbowroom.experiment.gauntlet.levels import LEVELS
 from elbowroom.experiment.gauntlet.names import PREFIX, check_name, is_course, parse_name
 from elbowroom.experiment.gauntlet.user import CourseUser
-from elbowroom.planning.command import Command
+from elbowroom.experiment.scripted_user import User
 from elbowroom.world.places.options import PlaceOptions
 from elbowroom.world.scene import Scene
 
@@ -26,7 +25,7 @@ def course_scene(name: str) -> Scene:
     return _course(name).scene
 
 
-def course_user(name: str, seed: int) -> Callable[[RootState, bool, float], Command] | None:
+def course_user(name: str, seed: int) -> User | None:
     """Who follows the line of the course of this name, for `crossing`; None where a scene is no course."""
     if not is_course(name):
         return None
