@@ -1,8 +1,10 @@
 """The path of one group along a root path: cheapest through the lattice, then proven as it will be shown.
 
-Where a path touches between its key times the edge is closed, with those near to it; then the edges of that interval
-through which the next paths would lead are checked in one batch, and the next cheapest path is taken. So edges are
-swept only where the search is blocked, and every candidate is swept as a whole. It is one compiled call.
+Where a path touches between its key times the edge is closed, with those near to it; then the edges of that interval,
+and of those next to it, through which the next paths would lead are checked in one batch, and the next cheapest path is
+taken. The more paths touch, the farther away edges are checked, twice as far each time: what no path gets past is in
+the way for many intervals, and would be run into in one after the other. So edges are swept only where the search is
+blocked, and every candidate is swept as a whole. It is one compiled call.
 """
 
 from typing import NamedTuple
@@ -107,13 +109,16 @@ def _closing(lattice: Lattice, edges: ClosedEdges) -> Lattice:
 
 
 @helper
-def _beside(touches: Bools) -> Bools:
-    """The intervals (n,) that touch, and those before and after them: what is passed in one can be passed in these."""
-    beside = touches.copy()
+def _near_to(touches: Bools, far: int) -> Bools:
+    """The intervals (n,) that touch, and those up to so many before and after them.
+
+    What is in the way in one is often in the way in these, and the next path would lead through it there.
+    """
+    near = np.zeros_like(touches)
     for k in range(touches.shape[0]):
         if touches[k]:
-            beside[max(k - 1, 0)], beside[min(k + 1, touches.shape[0] - 1)] = True, True
-    return beside
+            near[max(k - far, 0) : k + far + 1] = True
+    return near
 
 
 @helper
@@ -230,7 +235,7 @@ def search_group(scratch: Scratch, cache: GroupCache, task: GroupTask, weights: 
             deepest, spent = horizon, rounds + 1
             break
         settled += widen(lattice, work)
-        looked_at = _beside(touches)
+        looked_at = _near_to(touches, 1 << rounds)
         edges = with_tables(edges, looked_at)
         lattice = _closing(lattice, edges)
         first, farthest = _close(lattice, work, edges, nodes, touches, looked_at)
