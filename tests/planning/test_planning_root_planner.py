@@ -89,6 +89,32 @@ def test_a_path_starts_exactly_in_the_state_given() -> None:
     assert plan.path.states.shape == (5, ROOT_STATE)
 
 
+@pytest.mark.parametrize("x", [0.0, 0.1])
+@pytest.mark.parametrize("width", [0.8, 1.2, 2.0])
+def test_who_is_led_round_a_pillar_and_pulls_back_to_the_line_is_led_on(x: float, width: float) -> None:
+    planner, state, sides = RootPlanner(BODY, scene_of(([x, 0.6, 2.5], [width, 1.2, 0.5], 0.0))), RootState(), set[int]()
+    for _ in range(25):
+        back = max(-0.5, min(0.5, -1.5 * state.x))
+        plan = planner.plan(state, Command(forward=1.0, direction=back), HORIZON, INTERVAL)
+        state = RootState(*plan.path.states[1].tolist())
+        sides |= {round(math.copysign(1.0, state.x))} if abs(state.x) > 0.2 else set()
+    assert state.z > 3.2
+    assert len(sides) == 1
+
+
+@pytest.mark.parametrize("direction", [math.radians(20.0), math.radians(-50.0), math.pi])
+def test_who_is_led_round_a_pillar_may_go_elsewhere(direction: float) -> None:
+    planner, state = RootPlanner(BODY, scene_of(([-0.3, 0.6, 2.5], [1.2, 1.2, 0.5], 0.0))), RootState()
+    for _ in range(8):
+        plan = planner.plan(state, Command(forward=1.0, direction=0.0), HORIZON, INTERVAL)
+        state = RootState(*plan.path.states[1].tolist())
+    assert plan.kind is RootPlanKind.DETOUR
+    assert state.x > 0.2  # to the left of the line
+    planner.plan(state, Command(forward=1.0, direction=direction), HORIZON, INTERVAL)
+    assert planner.memory.line is not None
+    assert math.remainder(planner.memory.line.heading - direction, math.tau) == pytest.approx(0.0)
+
+
 @pytest.mark.parametrize("x", [-0.3, 0.0, 0.2])
 @pytest.mark.parametrize("width", [0.5, 1.2])
 def test_a_pillar_is_walked_round_and_the_line_of_travel_taken_up_again(x: float, width: float) -> None:

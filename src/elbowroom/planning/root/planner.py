@@ -194,7 +194,8 @@ class _OfferMaker:
         out = memory.way_out
         if out is not None and (line is None or not out.line.is_like(line)):
             out = None
-        self.memory = RootMemory(line, plan.path.states, evading, out, command.way, leg)
+        detour = line if plan.kind is RootPlanKind.DETOUR else None
+        self.memory = RootMemory(line, plan.path.states, evading, out, detour, command.way, leg)
         return plan
 
     def candidates(self, asked: Asked, paces: Sequence[float], most: int) -> Iterator[Offer]:
@@ -270,7 +271,9 @@ class _OfferMaker:
 
     def _offer(self, plan: RootPlan, evading: Evading | None, way_out: WayOut | None) -> Offer:
         """A path with what is remembered if it is taken."""
-        return Offer(plan, self.memory._replace(last=plan.path.states, evading=evading, way_out=way_out))
+        detour = self.memory.detour if plan.kind is RootPlanKind.DETOUR else None
+        memory = self.memory._replace(last=plan.path.states, evading=evading, way_out=way_out, detour=detour)
+        return Offer(plan, memory)
 
     def _through(self, asked: Asked, line: TravelLine, known: Evading | None, share: float) -> TravelLine | None:
         """The axis of a gap ahead, as a line of travel; the same as long as it is followed.
