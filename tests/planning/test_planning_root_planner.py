@@ -92,7 +92,8 @@ def test_a_path_starts_exactly_in_the_state_given() -> None:
 @pytest.mark.parametrize("x", [0.0, 0.1])
 @pytest.mark.parametrize("width", [0.8, 1.2, 2.0])
 def test_who_is_led_round_a_pillar_and_pulls_back_to_the_line_is_led_on(x: float, width: float) -> None:
-    planner, state, sides = RootPlanner(BODY, scene_of(([x, 0.6, 2.5], [width, 1.2, 0.5], 0.0))), RootState(), set[int]()
+    planner, state = RootPlanner(BODY, scene_of(([x, 0.6, 2.5], [width, 1.2, 0.5], 0.0))), RootState()
+    sides = set[int]()
     for _ in range(25):
         back = max(-0.5, min(0.5, -1.5 * state.x))
         plan = planner.plan(state, Command(forward=1.0, direction=back), HORIZON, INTERVAL)

@@ -37,6 +37,23 @@ def walked(directions: list[float], monkeypatch: pytest.MonkeyPatch) -> tuple[li
     return speeds, controller
 
 
+def _pillar(width: float) -> Scene:
+    obstacles = [{"type": "box", "center": [0.0, 1.1, 2.5], "size": [width, 2.2, 0.5]}]
+    return Scene.from_dict({**Scene.load("empty").to_dict(), "obstacles": obstacles})
+
+
+@pytest.mark.parametrize("width", [0.6, 1.2, 1.6])
+def test_who_pulls_back_to_his_line_is_led_past_a_pillar_without_turning_about(width: float) -> None:
+    controller, turned = Controller(Humanoid.default(), _pillar(width)), 0.0
+    for _ in range(360):
+        root = controller.root
+        back = max(-0.5, min(0.5, -1.5 * root.x))
+        assert not controller.step(Command(forward=1.0, direction=back), DT).touching
+        turned += abs(controller.root.heading - root.heading)
+    assert controller.root.z > 5.0  # 6 s; as fast as one who does not pull, less a second
+    assert turned < 2.5  # radians in all
+
+
 def test_who_turns_all_the_time_gets_no_joint_step_while_walking(monkeypatch: pytest.MonkeyPatch) -> None:
     times = DT * np.arange(360.0)
     speeds, controller = walked((0.12 * np.sin(4.0 * times)).tolist(), monkeypatch)

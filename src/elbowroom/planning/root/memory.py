@@ -18,6 +18,7 @@ Floats = NDArray[np.float64]
 
 _TURNED = 0.05  # radians
 _PULLED_BACK = math.radians(35.0)  # who is led round something and turns no farther back to the line means the same
+_BACK_AFTER = 0.3  # metres: who would be on the line before that wants beyond it
 _NEAR = 0.5  # metres: who is farther away than this does not go on from a path
 
 
@@ -45,7 +46,7 @@ class RootMemory(NamedTuple):
     last: Floats | None = None  # (n+1, 7) states of the last path
     evading: Evading | None = None
     way_out: WayOut | None = None  # the last one along the line
-    detour: TravelLine | None = None  # that the last path led from, round what stands in it
+    aside_from: TravelLine | None = None  # that the last path left, to get past what stands on it
     way: Corners = ()  # that the command which is being held leads along
     leg: int = 0  # the number of the leg that was reached
 
@@ -56,28 +57,29 @@ class RootMemory(NamedTuple):
     def travel_line(self, start: RootState, command: Command, motion: RootMotionSettings, widest: float) -> TravelLine:
         """The line that is being followed, or a new one from here if the command or the place has changed.
 
-        Who is led round what stands in it, and is pulled back, is led on: else he would be sent to and fro before it.
+        Who is led aside, past what stands on it, and pulls back is led on: else he would be sent to and fro.
         `widest` is the breadth in metres of a detour. Who was turned aside by an evasion still means the way that it
         led from.
         """
         line = self.line
         if line is not None and line.asked == asked_direction(command) and self._continues(start, line, widest):
             return line
-        if self.detour is not None and self._is_pulled_back(start, self.detour, command, widest):
-            return self.detour
+        if self.aside_from is not None and self._is_pulled_back(start, self.aside_from, command, widest):
+            return self.aside_from
         if self.evading is not None and command.direction is None and self.still_turned(start, widest):
             start = start._replace(heading=self.evading.line.facing, turn=0.0)
         return new_line(start, command, motion)
 
     def _is_pulled_back(self, start: RootState, line: TravelLine, command: Command, widest: float) -> bool:
-        """Whether who is led round something that stands on a line wants back to it."""
+        """Whether who is led aside of a line, round something, wants back to it."""
         if command.direction is None or not line.turns or not self._continues(start, line, widest):
             return False
         if (command.forward < 0.0) is not (line.asked[1] < 0.0):
             return False  # one goes backwards, the other does not
         left = line.coordinates(start.x, start.z)[1]
         bent = math.remainder(command.direction - line.heading, math.tau)
-        return abs(bent) < _PULLED_BACK and bent * left < 0.0
+        back = abs(bent) < _PULLED_BACK and bent * left < 0.0
+        return back and _BACK_AFTER * math.tan(abs(bent)) < abs(left)
 
     def still_turned(self, start: RootState, widest: float) -> bool:
         """Whether the body is turned away from where the user means it to face."""
