@@ -103,7 +103,7 @@ def test_who_is_led_round_a_pillar_and_pulls_back_to_the_line_is_led_on(x: float
     assert len(sides) == 1
 
 
-@pytest.mark.parametrize("direction", [math.radians(20.0), math.radians(-50.0), math.pi])
+@pytest.mark.parametrize("direction", [math.radians(20.0), math.radians(-60.0), math.pi])
 def test_who_is_led_round_a_pillar_may_go_elsewhere(direction: float) -> None:
     planner, state = RootPlanner(BODY, scene_of(([-0.3, 0.6, 2.5], [1.2, 1.2, 0.5], 0.0))), RootState()
     for _ in range(8):

@@ -8,7 +8,7 @@ from elbowroom.experiment.gauntlet.levels import level_of
 
 # What may be steered through; `steer_scenes` makes them.
 STEERED = (
-    *("bends", "narrow bends", "slalom", "c", "d", "d, keys", "c, strafing", "doorway"),
+    *("bends", "narrow bends", "slalom", "pillars", "c", "d", "d, keys", "c, strafing", "doorway"),
     *("course 3", "course 5", "traffic", "stair"),
 )
 _MOST_POSTURES, _MOST_AT_MESHES = 1_000_000, 4_000_000

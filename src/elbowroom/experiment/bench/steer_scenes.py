@@ -23,6 +23,8 @@ _STRETCH = 2.2  # metres between bends
 _WALL = (0.1, 2.2)  # metres: thickness and height
 _POSTS, _APART, _BESIDE = 6, 1.5, 0.2  # a slalom: posts, metres from one to the next, and beside the middle
 _POST = 0.05  # metres, half the thickness
+_PILLARS = (0.6, 1.2, 1.6)  # metres: the breadths of those that stand in the line
+_DEPTH, _BETWEEN = 0.4, 4.0  # metres: their depth, and from one to the next
 _TREADS, _RISE, _DEEP = 5, 0.17, 0.28  # a stair up and down again: treads, metres
 _STAIR, _LANDING, _SILL = 2.0, 1.2, (7.5, 0.1, 0.1)  # where it begins, its landing; a sill's place, depth and height
 _PAST = 0.45  # metres beside the middle at which a user means to pass a post
@@ -108,6 +110,7 @@ def _made() -> dict[str, Callable[[], SteeredScene]]:
         "bends": lambda: corridor("bends", 1.0),
         "narrow bends": lambda: corridor("narrow bends", 0.8),
         "slalom": slalom,
+        "pillars": pillars,
         "c": lambda: _stock("c", mouse_look),
         "d": lambda: _stock("d", mouse_look),
         "d, keys": lambda: _stock("d", KEY_FLIPS),
@@ -148,6 +151,16 @@ def slalom() -> SteeredScene:
     past = np.stack([-(_PAST - _BESIDE) * sides, places[:, 1]], axis=1)
     route = np.concatenate([[[0.0, 0.0]], past, [[0.0, _APART * (_POSTS + 1.5)]]])
     return SteeredScene("slalom", _scene("slalom", route, boxes), route, mouse_look)
+
+
+def pillars() -> SteeredScene:
+    """Pillars in the line that a user keeps to: he looks back at it while he is led round them."""
+    boxes = [
+        (np.array([0.0, 0.5 * _WALL[1], _BETWEEN * (0.7 + i)]), 0.0, (broad, _WALL[1], _DEPTH))
+        for i, broad in enumerate(_PILLARS)
+    ]
+    route = np.array([[0.0, 0.0], [0.0, _BETWEEN * len(_PILLARS)]])
+    return SteeredScene("pillars", _scene("pillars", route, boxes), route, mouse_look)
 
 
 def stair() -> SteeredScene:

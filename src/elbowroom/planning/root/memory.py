@@ -17,7 +17,7 @@ from elbowroom.planning.root.way_out import WayOut
 Floats = NDArray[np.float64]
 
 _TURNED = 0.05  # radians
-_PULLED_BACK = math.radians(35.0)  # who is led round something and turns no farther back to the line means the same
+_PULLED_BACK = math.radians(50.0)  # who is led round something and turns no farther back to the line means the same
 _BACK_AFTER = 0.3  # metres: who would be on the line before that wants beyond it
 _NEAR = 0.5  # metres: who is farther away than this does not go on from a path
 
