@@ -97,8 +97,7 @@ def walk(
         nullcontext() if record is None else Recorder(record, controller) as recorder,
         stream_to(vmc, vmc_root, bundles=vmc_bundles) or nullcontext() as stream,
     ):
-        listener = _listener(bar, recorder, stream, humanoid)
-        outcome = _walked(controller, settings, target or scene, listener)
+        outcome = _walked(controller, settings, target or scene, _listener(bar, recorder, stream, humanoid))
     raise typer.Exit(0 if _told(outcome, place.name, record, json) else FELL_SHORT)
 
 

@@ -46,7 +46,7 @@ class RootMemory(NamedTuple):
     last: Floats | None = None  # (n+1, 7) states of the last path
     evading: Evading | None = None
     way_out: WayOut | None = None  # the last one along the line
-    aside_from: TravelLine | None = None  # that the last path left, to get past what stands on it
+    aside: bool = False  # whether the last path leaves the line, to get past what stands on it
     way: Corners = ()  # that the command which is being held leads along
     leg: int = 0  # the number of the leg that was reached
 
@@ -62,24 +62,15 @@ class RootMemory(NamedTuple):
         led from.
         """
         line = self.line
-        if line is not None and line.asked == asked_direction(command) and self._continues(start, line, widest):
+        if line is not None and self._continues(start, line, widest) and self._is_meant(start, line, command):
             return line
-        if self.aside_from is not None and self._is_pulled_back(start, self.aside_from, command, widest):
-            return self.aside_from
         if self.evading is not None and command.direction is None and self.still_turned(start, widest):
             start = start._replace(heading=self.evading.line.facing, turn=0.0)
         return new_line(start, command, motion)
 
-    def _is_pulled_back(self, start: RootState, line: TravelLine, command: Command, widest: float) -> bool:
-        """Whether who is led aside of a line, round something, wants back to it."""
-        if command.direction is None or not line.turns or not self._continues(start, line, widest):
-            return False
-        if (command.forward < 0.0) is not (line.asked[1] < 0.0):
-            return False  # one goes backwards, the other does not
-        left = line.coordinates(start.x, start.z)[1]
-        bent = math.remainder(command.direction - line.heading, math.tau)
-        back = abs(bent) < _PULLED_BACK and bent * left < 0.0
-        return back and _BACK_AFTER * math.tan(abs(bent)) < abs(left)
+    def _is_meant(self, start: RootState, line: TravelLine, command: Command) -> bool:
+        """Whether a command asks for a line, or is only turned back to it on the way past what stands there."""
+        return line.asked == asked_direction(command) or (self.aside and _pulls_back(start, line, command))
 
     def still_turned(self, start: RootState, widest: float) -> bool:
         """Whether the body is turned away from where the user means it to face."""
@@ -93,3 +84,13 @@ class RootMemory(NamedTuple):
             return False
         places = self.last[:, :2].tolist()
         return any(math.hypot(x - start.x, z - start.z) < _NEAR for x, z in places)
+
+
+def _pulls_back(start: RootState, line: TravelLine, command: Command) -> bool:
+    """Whether a command turns who is beside a line a little towards it, to come to it not at once."""
+    if command.direction is None or not line.turns or (command.forward < 0.0) is not (line.asked[1] < 0.0):
+        return False
+    left = line.coordinates(start.x, start.z)[1]
+    bent = math.remainder(command.direction - line.heading, math.tau)
+    back = abs(bent) < _PULLED_BACK and bent * left < 0.0
+    return back and _BACK_AFTER * math.tan(abs(bent)) < abs(left)

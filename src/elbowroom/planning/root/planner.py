@@ -194,7 +194,7 @@ class _OfferMaker:
         out = memory.way_out
         if out is not None and (line is None or not out.line.is_like(line)):
             out = None
-        self.memory = RootMemory(line, plan.path.states, evading, out, _aside_from(plan, line), command.way, leg)
+        self.memory = RootMemory(line, plan.path.states, evading, out, _gets_past(plan), command.way, leg)
         return plan
 
     def candidates(self, asked: Asked, paces: Sequence[float], most: int) -> Iterator[Offer]:
@@ -270,8 +270,8 @@ class _OfferMaker:
 
     def _offer(self, plan: RootPlan, evading: Evading | None, way_out: WayOut | None) -> Offer:
         """A path with what is remembered if it is taken."""
-        left, last = _aside_from(plan, self.memory.line, evading), plan.path.states
-        return Offer(plan, self.memory._replace(last=last, evading=evading, way_out=way_out, aside_from=left))
+        aside, last = _gets_past(plan, evading), plan.path.states
+        return Offer(plan, self.memory._replace(last=last, evading=evading, way_out=way_out, aside=aside))
 
     def _through(self, asked: Asked, line: TravelLine, known: Evading | None, share: float) -> TravelLine | None:
         """The axis of a gap ahead, as a line of travel; the same as long as it is followed.
@@ -318,10 +318,10 @@ class _OfferMaker:
         ]
 
 
-def _aside_from(plan: RootPlan, line: TravelLine | None, evading: Evading | None = None) -> TravelLine | None:
-    """The line that a path leaves, if it does, to get past what stands on it."""
-    past = plan.kind is RootPlanKind.EVASION and evading is not None and evading.whole
-    return line if past or plan.kind is RootPlanKind.DETOUR else None
+def _gets_past(plan: RootPlan, evading: Evading | None = None) -> bool:
+    """Whether a path leaves the line of travel and gets past what stands on it."""
+    whole = evading is not None and evading.whole
+    return plan.kind is RootPlanKind.DETOUR or (plan.kind is RootPlanKind.EVASION and whole)
 
 
 def _dearer(offers: list[_Idea], lost: float) -> bool:
