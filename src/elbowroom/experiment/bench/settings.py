@@ -116,7 +116,7 @@ def check_steered(names: Sequence[str]) -> None:
     """Raises `InputError` if nothing of such a name can be steered through."""
     for name in names:
         if name not in STEERED:
-            raise InputError(f"steered scene {name!r} is unknown; there are {', '.join(STEERED)}")
+            raise InputError(f"steered scene {name!r} is unknown; there are {', '.join(map(repr, STEERED))}")
 
 
 def _check(name: str, value: float, least: int, most: int) -> None:
