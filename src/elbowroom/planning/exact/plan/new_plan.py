@@ -168,16 +168,21 @@ class NewPlan:
         return still and not len(self.root_planner.moving)
 
     def _all_together(self, tried: list[_Tried]) -> FullPlan | None:
-        """A plan on a root path on which all groups together find one after all: those that led farthest come first."""
+        """A plan on a root path on which all groups together find one after all; for who stands, where the waist had no
+        way left, one with more postures. Those that led farthest come first.
+        """
         farthest = sorted(tried, key=lambda one: -one.upper.reached)[:_THOUGHT_THROUGH]
-        plans = (self._together(one.root) for one in farthest)
+        plans = (self._together(one) for one in farthest)
         return next((plan for plan in plans if plan is not None), None)
 
-    def _together(self, root: RootPlan) -> FullPlan | None:
-        """A plan on a root path, which is followed then; None if there is none, or if enough was done already."""
-        if self._attempts.failed(root.path, Effort.JOINT) is not None or self._attempts.spent:
+    def _together(self, one: _Tried) -> FullPlan | None:
+        """A plan on a root path that was tried, which is followed then; None if there is none, or enough was done."""
+        root, barred = one.root, one.upper.search.barred
+        effort = Effort.REFINED if barred else Effort.JOINT
+        vain = self._attempts.failed(root.path, effort) is not None or (barred and not self._stands)
+        if vain or self._attempts.spent:
             return None
-        upper = self._upper_body(root.path, Effort.JOINT)
+        upper = self._upper_body(root.path, effort)
         if upper.reached < root.path.horizon:
             return None
         self.root_planner.follow(root)
@@ -255,7 +260,8 @@ class NewPlan:
         if not harsh and (vain := self._attempts.failed(path, effort)) is not None:
             return vain
         upper = self._searched(path, effort, harsh=harsh)
-        self._attempts.enter(path, effort, upper)
+        barred = upper.search.barred and effort is not Effort.REFINED
+        self._attempts.enter(path, Effort.JOINT if barred else effort, upper)
         return upper
 
     def _searched(self, path: RootPath, effort: Effort, *, harsh: bool = False) -> UpperPlan:

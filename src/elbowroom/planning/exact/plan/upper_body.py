@@ -159,6 +159,6 @@ class UpperBodyPlanner:
                 known = Known(group, model.limbs[group], model.reaches[group], self.memory.known(group))
                 if number == 0:
                     trunk = known._replace(limb=model.trunk, reach=model.trunk_reach)
-                    yield group, waists_for(model.own_body, trunk, here, self._refinement)
+                    yield group, waists_for(model.own_body, trunk, here, self._refinement, search.too_deep)
                 else:
                     yield group, children_for(model.own_body, known, here, self._refinement)

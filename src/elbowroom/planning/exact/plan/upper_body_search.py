@@ -29,7 +29,7 @@ from elbowroom.planning.exact.memory.previous_plan import RequiredMargins, jolts
 from elbowroom.planning.exact.plan.children import ChildSearch, GroupPaths
 from elbowroom.planning.exact.plan.evidence import EvidenceLog
 from elbowroom.planning.exact.refine.blocked import Blocked
-from elbowroom.planning.exact.sweep.crouch import ROUNDS, Crouch, node_lowerings
+from elbowroom.planning.exact.sweep.crouch import ROUNDS, Crouch, node_lowerings, too_deep
 from elbowroom.planning.exact.sweep.node_clearances import HELD_AT_START, held_clearance
 from elbowroom.planning.exact.sweep.scratch import new_scratch
 from elbowroom.planning.model.lowered_legs import LoweredLegs
@@ -103,6 +103,16 @@ class UpperBodySearch:
     def goals(self) -> Floats:
         """The goals (n+1, LOCAL)."""
         return self.problem.goals
+
+    @property
+    def barred(self) -> bool:
+        """Whether no path is left that the waist could try: then there is none for all groups together either."""
+        way = self._waist
+        return way is not None and way.reached < self.path.horizon and way.rounds < self.weights.rounds
+
+    def too_deep(self, depth: int, waists: Floats) -> Bools:
+        """Which of some waists (N, d) crouch deeper at a key time than the legs can there."""
+        return too_deep(self.legs, self.path.states[depth], waists)
 
     def motion(self, rounds: int, *, again: bool = True) -> LocalPlan | None:
         """The motion, if there is one: group after group, `again` under another waist, then in so many rounds of the

@@ -1,5 +1,6 @@
 """Postures drawn for a blocked slice: which of them are free there, and worth taking in."""
 
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
@@ -42,8 +43,17 @@ class Known(NamedTuple):
     postures: Floats  # (V, d) that it has already
 
 
-def waists_for(body: OwnBody, known: Known, blocked: Blocked, settings: RefinementSettings) -> Floats:
-    """Waist postures (k, d) that are free in a blocked slice and unlike those that are known."""
+def waists_for(
+    body: OwnBody,
+    known: Known,
+    blocked: Blocked,
+    settings: RefinementSettings,
+    too_deep: Callable[[int, Floats], Bools],
+) -> Floats:
+    """Waist postures (k, d) that are free in a blocked slice and unlike those that are known.
+
+    `too_deep` tells which of some (N, d) crouch deeper at a key time than the legs can: on stairs, most that crouch.
+    """
     limb = known.limb
     drawn = drawn_postures(known.group, blocked.goal, settings.drawn, settings.near)
     places, turns = blocked.around.places[blocked.depth][None], blocked.around.turns[blocked.depth][None]
@@ -53,6 +63,7 @@ def waists_for(body: OwnBody, known: Known, blocked: Blocked, settings: Refineme
     )
     free: Bools = clear[0, : len(drawn)] >= blocked.margin
     free[free] = ~body.folded(drawn[free])
+    free[free] = ~too_deep(blocked.depth, drawn[free])
     return _worth(drawn, free, known.postures, blocked.goal, settings)
 
 

@@ -81,6 +81,13 @@ class Crouch:
                 extra[at, lowerings[at] > max(most, _UPRIGHT)] = np.inf
 
 
+def too_deep(legs: LoweredLegs, root: Floats, waists: Floats) -> Bools:
+    """Which of some waists (N, 3) crouch deeper in a root state (7,) than legs can, among what stands there."""
+    clear = legs.clearances(np.tile(root, (len(waists), 1)), waists[:, _COLUMN], farthest=2.0 * _MARGIN)
+    deep: Bools = clear < _MARGIN
+    return deep
+
+
 def node_lowerings(postures: Floats, goals: Floats, previous: Floats, start: Floats) -> Floats:
     """The lowerings (n+1, V + 4) of postures (V, 3) and of each key time's own: its goal, the last plan's, the start's.
 
