@@ -6,8 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.geometry import quaternion
-from elbowroom.jit import exact_kernel, helper, plain
-from elbowroom.world.clipping import clipped
+from elbowroom.jit import exact_kernel, helper
+from elbowroom.world.ground.cells import Grid, Parts, cell_by_cell, grid_over, part_in, parts_of
 from elbowroom.world.ground.gaps import spans_over
 from elbowroom.world.ground.ground import FIRM, PLAIN, RELIEF, SPANS, STEEPEST, STEP, Ground
 from elbowroom.world.ground.kept_ground import kept_ground
@@ -18,16 +18,11 @@ from elbowroom.world.obstacles.triangles import triangles_of
 from elbowroom.world.places.floor_area import FloorArea
 
 Floats = NDArray[np.float64]
-Floats32 = NDArray[np.float32]
 Longs = NDArray[np.int64]
 Bools = NDArray[np.bool_]
 
 RISE = 0.005  # metres: what rises no higher from the plane is the plane
-_CELL = 0.08  # metres
-_X, _Z, _CORNERS = plain(0), plain(2), plain(3)  # axes over the ground, and what a triangle has
-_MOST_CELLS, _MOST_MEMBERS = 400_000, 20_000_000
 _SAME, _WHOLE = 2e-4, 0.9999  # metres, share of a cell: what is as high, and covered
-_HAIR = 1e-4  # metres by which what is known of a part of a triangle is wide of it
 _FLAT = 1e-9  # m²: a triangle that covers less of the ground is upright
 _THRESHOLD = 0.2  # metres that a floor is taken to reach beyond its edge: what is there is no hole
 
@@ -89,39 +84,25 @@ def _covered(triangles: Floats, floor: FloorArea | None) -> Bools:
 
 
 def _gridded(triangles: Floats, floor: FloorArea | None, step: float) -> Ground:
-    ground = _with_evens(_over(triangles, np.empty((0, 3, 3)), floor, step))
-    gaps = spans_over(ground)
-    if not len(gaps):
-        return ground
-    whole = _over(triangles, gaps, floor, step)
-    if whole.shape != ground.shape:
-        return _with_evens(whole)
-    return whole._replace(even_starts=ground.even_starts, evens=ground.evens)
+    grid, planes = grid_over(triangles, floor), planes_of(triangles)
+    parts = parts_of(planes, grid)
+    starts, members, bottoms, tops = cell_by_cell(parts, grid)
+    level = np.ones(grid.cells, np.bool_) if floor is None else _floor_cells(floor, grid)
+    none = (np.zeros(grid.cells + 1, np.int64), np.empty(0))
+    firm = Ground(False, step, *grid, starts, members, bottoms, tops, planes, level, floor is None, *none)
+    ground = _with_evens(firm)
+    gaps = planes_of(spans_over(ground))
+    return _spanned(ground, parts, gaps, grid) if len(gaps) else ground
 
 
-def _over(firm: Floats, gaps: Floats, floor: FloorArea | None, step: float) -> Ground:
-    """The ground of triangles (T, 3, 3) and of others that span gaps, still without even heights."""
-    triangles, spanning = np.concatenate([firm, gaps]), np.arange(len(firm) + len(gaps)) >= len(firm)
-    flat = triangles[:, :, [0, 2]]
-    least, most = firm[:, :, [0, 2]].min(axis=(0, 1)), firm[:, :, [0, 2]].max(axis=(0, 1))
-    if floor is not None:
-        corner = np.array(floor.origin)
-        least, most = np.minimum(least, corner), np.maximum(most, corner + floor.cell * np.array(floor.there.shape))
-    cell = max(_CELL, float(np.sqrt(np.prod(most - least + _CELL) / _MOST_CELLS)))
-    while True:
-        wide, deep = (int(size / cell) + 1 for size in (most - least).tolist())
-        spans = _spans(flat, least, cell, (wide, deep))
-        count = int(((spans[:, 1] - spans[:, 0] + 1) * (spans[:, 3] - spans[:, 2] + 1)).sum())
-        if count <= _MOST_MEMBERS:
-            break
-        cell *= 2.0
-    begins = (float(least[0]), float(least[1]))
-    level = np.ones(wide * deep, np.bool_) if floor is None else _floor_cells(floor, begins, cell, (wide, deep))
-    planes = planes_of(triangles)
-    planes[:, SPANS] = spanning
-    starts, members, bottoms, tops = _in_cells(planes, *_members(spans, wide, deep, count), (*begins, cell), deep)
-    there, none = (starts, members, bottoms, tops, planes), (np.zeros(wide * deep + 1, np.int64), np.empty(0))
-    return Ground(False, step, begins, cell, (wide, deep), *there, level, floor is None, *none)
+def _spanned(ground: Ground, firm: Parts, gaps: Floats, grid: Grid) -> Ground:
+    """The same ground, of which the firm parts are given, with its gaps spanned by triangles (G, 10)."""
+    gaps[:, SPANS] = 1.0
+    spans = parts_of(gaps, grid, first=len(ground.triangles))
+    both = Parts(*(np.concatenate([one, other]) for one, other in zip(firm, spans, strict=True)))
+    starts, members, bottoms, tops = cell_by_cell(both, grid)
+    planes = np.concatenate([ground.triangles, gaps])
+    return ground._replace(starts=starts, members=members, bottoms=bottoms, tops=tops, triangles=planes)
 
 
 def _with_evens(ground: Ground) -> Ground:
@@ -148,63 +129,6 @@ def planes_of(triangles: Floats) -> Floats:
     return np.ascontiguousarray(np.stack([*columns, np.zeros(len(triangles))], axis=1))
 
 
-def _spans(flat: Floats, least: Floats, cell: float, shape: tuple[int, int]) -> Longs:
-    """The first and the last cell along x, and along z, (T, 4) of triangles (T, 3, 2) seen from above."""
-    low = np.floor((flat.min(axis=1) - least) / cell).astype(np.int64)
-    high = np.floor((flat.max(axis=1) - least) / cell).astype(np.int64)
-    last = np.array(shape) - 1
-    low, high = np.clip(low, 0, last), np.clip(high, 0, last)
-    return np.ascontiguousarray(np.stack([low[:, 0], high[:, 0], low[:, 1], high[:, 1]], axis=1))
-
-
-@exact_kernel
-def _members(spans: Longs, wide: int, deep: int, count: int) -> tuple[Longs, Longs]:
-    """Where each cell's triangles begin (cells + 1,), and their numbers (count,)."""
-    starts, members = np.zeros(wide * deep + 1, np.int64), np.empty(count, np.int64)
-    for t in range(spans.shape[0]):
-        for ix in range(spans[t, 0], spans[t, 1] + 1):
-            for iz in range(spans[t, 2], spans[t, 3] + 1):
-                starts[ix * deep + iz + 1] += 1
-    for c in range(wide * deep):
-        starts[c + 1] += starts[c]
-    filled = starts.copy()
-    for t in range(spans.shape[0]):
-        for ix in range(spans[t, 0], spans[t, 1] + 1):
-            for iz in range(spans[t, 2], spans[t, 3] + 1):
-                cell = ix * deep + iz
-                members[filled[cell]] = t
-                filled[cell] += 1
-    return starts, members
-
-
-@exact_kernel
-def _in_cells(
-    planes: Floats, starts: Longs, members: Longs, grid: tuple[float, float, float], deep: int
-) -> tuple[Longs, Longs, Floats32, Floats32]:
-    """Of the triangles whose spans cover each cell those with a part in it: what `Ground` has of its `members`.
-
-    `grid`: x and z of its corner, and the side of a cell. A part within `_HAIR` of a cell counts.
-    """
-    x, z, side = grid
-    begins, count, parts = np.zeros(starts.shape[0], np.int64), 0, np.empty((members.shape[0], 2), np.float32)
-    kept = np.empty(members.shape[0], np.int64)
-    for cell in range(starts.shape[0] - 1):
-        corner = (x + side * (cell // deep) - _HAIR, z + side * (cell % deep) - _HAIR)
-        for m in range(starts[cell], starts[cell + 1]):
-            _, low, high = _part_in(planes[members[m]], corner, side + 2.0 * _HAIR)
-            if low <= high:
-                at = count
-                while at > begins[cell] and parts[at - 1, 0] < low - _HAIR:
-                    kept[at], parts[at] = kept[at - 1], parts[at - 1]
-                    at -= 1
-                kept[at], parts[at, 0], parts[at, 1] = members[m], low - _HAIR, high + _HAIR
-                count += 1
-        begins[cell + 1] = count
-        for m in range(count - 2, begins[cell] - 1, -1):
-            parts[m, 1] = max(parts[m, 1], parts[m + 1, 1])
-    return begins, kept[:count].copy(), parts[:count, 0].copy(), parts[:count, 1].copy()
-
-
 @exact_kernel
 def _evens(ground: Ground) -> tuple[Longs, Floats]:
     """Where the even heights of each cell begin (cells + 1,), and these (E,)."""
@@ -217,7 +141,7 @@ def _evens(ground: Ground) -> tuple[Longs, Floats]:
             parts[0], count = (side * side, 0.0, 0.0), 1
         for m in range(starts[cell], starts[cell + 1]):
             if planes[members[m], SPANS] < FIRM:
-                parts[count] = _part_in(planes[members[m]], corner, side)
+                parts[count] = part_in(planes[members[m]], corner, side)
                 count += parts[count, 0] > 0.0
         for k in range(count):
             if _is_even(parts[:count], k, side, ground.step) and is_whole(ground, corner, parts[k, 2], RELIEF):
@@ -248,32 +172,11 @@ def _is_even(parts: Floats, k: int, side: float, step: float) -> bool:
     return bool(covered >= _WHOLE * side * side)
 
 
-@helper
-def _part_in(triangle: Floats, corner: tuple[float, float], side: float) -> tuple[float, float, float]:
-    """The area of a triangle within a square, seen from above, and the lowest and the highest point of that part."""
-    piece, other = np.zeros((8, 3)), np.zeros((8, 3))
-    for i, at in enumerate((0, 3, 5)):
-        piece[i, 0], piece[i, 2] = triangle[at], triangle[at + 1]
-        along, aside = triangle[at] - triangle[0], triangle[at + 1] - triangle[1]
-        piece[i, 1] = triangle[2] + triangle[7] * along + triangle[8] * aside
-    count = clipped(piece, _CORNERS, _X, corner[0], 1.0, other)
-    count = clipped(other, count, _Z, corner[1], 1.0, piece)
-    count = clipped(piece, count, _X, corner[0] + side, -1.0, other)
-    count = clipped(other, count, _Z, corner[1] + side, -1.0, piece)
-    area, low, high = 0.0, np.inf, -np.inf
-    for i in range(count):
-        j = (i + 1) % count
-        area += piece[i, 0] * piece[j, 2] - piece[j, 0] * piece[i, 2]
-        low, high = min(low, piece[i, 1]), max(high, piece[i, 1])
-    return 0.5 * abs(area), low, high
-
-
-def _floor_cells(floor: FloorArea, corner: tuple[float, float], cell: float, shape: tuple[int, int]) -> Bools:
+def _floor_cells(floor: FloorArea, grid: Grid) -> Bools:
     """The cells (nx nz,) in which a place has its ground floor, or nearly."""
-    along = np.arange(-_THRESHOLD, cell + _THRESHOLD, floor.cell)
-    x = corner[0] + cell * np.arange(shape[0])[:, None] + along
-    z = corner[1] + cell * np.arange(shape[1])[:, None] + along
-    found = np.zeros(shape, np.bool_)
+    along = np.arange(-_THRESHOLD, grid.cell + _THRESHOLD, floor.cell)
+    x, z = (grid.corner[axis] + grid.cell * np.arange(grid.shape[axis])[:, None] + along for axis in (0, 1))
+    found = np.zeros(grid.shape, np.bool_)
     for i in range(len(along)):
         for j in range(len(along)):
             found |= floor.holds(*np.broadcast_arrays(x[:, i][:, None], z[:, j][None, :]))
