@@ -20,6 +20,17 @@ def test_gaps_equal_those_of_coal() -> None:
         assert abs(gap - wanted) < 1e-6 if wanted > -0.9 * radii.min() else gap <= 0.0
 
 
+def test_of_many_rows_the_gap_is_that_of_the_nearest() -> None:
+    rng = np.random.default_rng(2)
+    begins, radii = rng.uniform(-2.0, 2.0, (400, 3)), rng.uniform(0.02, 0.2, 400)
+    rows = BodyRows(np.concatenate([begins, begins + rng.normal(0.0, 0.2, (400, 3))], axis=1), radii, begins[:, 0])
+    alone = [BodyRows(rows.axes[i : i + 1], rows.radii[i : i + 1], rows.way[i : i + 1]) for i in range(400)]
+    for _ in range(50):
+        turn, size = tuple(rng.uniform(-3, 3, 3).tolist()), tuple(rng.uniform(0.05, 1.5, 3).tolist())
+        box = Placed("box", tuple(rng.uniform(-3.0, 3.0, 3).tolist()), turn, size).row()
+        assert rows.gap(box) == min(row.gap(box) for row in alone)
+
+
 def coal_gap(axis: np.ndarray, radius: float, row: np.ndarray) -> float:
     step = axis[3:] - axis[:3]
     length = float(np.linalg.norm(step))

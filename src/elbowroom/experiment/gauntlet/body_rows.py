@@ -5,7 +5,8 @@ otherwise, a distance would have to lie within some 1e-15 m of a threshold.
 """
 
 import math
-from typing import NamedTuple
+from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,7 +16,8 @@ from elbowroom.jit import exact_kernel, helper, inner_exact_kernel
 Floats = NDArray[np.float64]
 
 
-class BodyRows(NamedTuple):
+@dataclass(frozen=True, eq=False)
+class BodyRows:
     """Capsules in the world, one per row, in no particular order."""
 
     axes: Floats  # (M, 6) end points ax, ay, az, bx, by, bz, metres
@@ -29,14 +31,18 @@ class BodyRows(NamedTuple):
 
     def every(self, step: int) -> "BodyRows":
         """Every `step`-th row."""
-        return BodyRows(*(np.ascontiguousarray(column[::step]) for column in self))
+        return BodyRows(self.axes[::step].copy(), self.radii[::step].copy(), self.way[::step].copy())
 
     def gap(self, box: Floats) -> float:
         """The least clearance of any row from a box (15,); infinite without rows.
 
         A box is its centre, the rotation matrix from the world to its axes row by row, and half its sizes.
         """
-        return float(least_gap(self.axes, self.radii, box))
+        return float(_least_gap(self.axes, self.radii, self._spheres, box))
+
+    @cached_property
+    def _spheres(self) -> Floats:
+        return _spheres_around(self.axes, self.radii)
 
 
 def rows_of(segments: NDArray[np.floating], radii: Floats, way: Floats) -> BodyRows:
@@ -49,30 +55,53 @@ def rows_of(segments: NDArray[np.floating], radii: Floats, way: Floats) -> BodyR
 
 def joined(*parts: BodyRows) -> BodyRows:
     """The rows of all parts."""
-    axes, radii, way = (np.concatenate(columns) for columns in zip(*parts, strict=True))
-    return BodyRows(axes, radii, way)
+    columns = [(part.axes, part.radii, part.way) for part in parts]
+    return BodyRows(*(np.concatenate(column) for column in zip(*columns, strict=True)))
 
 
 @exact_kernel
-def least_gap(axes: Floats, radii: Floats, box: Floats) -> float:
-    """The least distance of axes (M, 6) from a box (15,) less their radii (M,); a row too far to matter is skipped."""
-    best = np.inf
-    size = math.sqrt(box[12] ** 2 + box[13] ** 2 + box[14] ** 2)
-    p, d = np.empty(3), np.empty(3)
+def _least_gap(axes: Floats, radii: Floats, spheres: Floats, box: Floats) -> float:
+    """The least distance of axes (M, 6) from a box (15,) less their radii (M,).
+
+    A row whose sphere (4, M) is too far away to matter is skipped.
+    """
+    best, p, d = np.inf, np.empty(3), np.empty(3)
+    least = _least_of_spheres(spheres, box)
     for i in range(axes.shape[0]):
-        a = axes[i]
-        away, half = 0.0, 0.0
-        for k in range(3):
-            away += (0.5 * (a[k] + a[k + 3]) - box[k]) ** 2
-            half += (a[k + 3] - a[k]) ** 2
-        if math.sqrt(away) - 0.5 * math.sqrt(half) - size - radii[i] >= best:
-            continue
-        for k in range(3):
-            m = 3 + 3 * k
-            p[k] = box[m] * (a[0] - box[0]) + box[m + 1] * (a[1] - box[1]) + box[m + 2] * (a[2] - box[2])
-            d[k] = box[m] * (a[3] - a[0]) + box[m + 1] * (a[4] - a[1]) + box[m + 2] * (a[5] - a[2])
-        best = min(best, _axis_to_box(p, d, box[12:]) - radii[i])
+        if least[i] < best:
+            a = axes[i]
+            for k in range(3):
+                m = 3 + 3 * k
+                p[k] = box[m] * (a[0] - box[0]) + box[m + 1] * (a[1] - box[1]) + box[m + 2] * (a[2] - box[2])
+                d[k] = box[m] * (a[3] - a[0]) + box[m + 1] * (a[4] - a[1]) + box[m + 2] * (a[5] - a[2])
+            best = min(best, _axis_to_box(p, d, box[12:]) - radii[i])
     return best
+
+
+@exact_kernel
+def _spheres_around(axes: Floats, radii: Floats) -> Floats:
+    """Spheres (4, M), their middle and radius, around capsules: axes (M, 6), radii (M,)."""
+    spheres = np.empty((4, axes.shape[0]))
+    for i in range(axes.shape[0]):
+        half = 0.0
+        for k in range(3):
+            spheres[k, i] = 0.5 * (axes[i, k] + axes[i, k + 3])
+            half += (0.5 * (axes[i, k + 3] - axes[i, k])) ** 2
+        spheres[3, i] = math.sqrt(half) + radii[i]
+    return spheres
+
+
+@helper
+def _least_of_spheres(spheres: Floats, box: Floats) -> Floats:
+    """What the clearance of capsules in spheres (4, M) from a box (15,) is at least (M,)."""
+    squares = np.zeros(spheres.shape[1])
+    for k in range(3):
+        across, up, ahead = box[3 + 3 * k], box[4 + 3 * k], box[5 + 3 * k]
+        for i in range(np.uint64(squares.shape[0])):
+            x, y, z = spheres[0, i] - box[0], spheres[1, i] - box[1], spheres[2, i] - box[2]
+            squares[i] += max(abs(across * x + up * y + ahead * z) - box[12 + k], 0.0) ** 2
+    least: Floats = np.sqrt(squares) - spheres[3]
+    return least
 
 
 @inner_exact_kernel

@@ -26,7 +26,7 @@ class CourseUser:
         if wish != FORWARD or self._line.straight:
             return wish
         self._way = self._line.nearest(root.x, root.z, self._way)
-        point, heading = self._line.points(self._way), float(self._line.heading(self._way))
+        point, (heading, ahead) = self._line.points(self._way), self._line.heading([self._way, self._way + _LEAD])
         beside = (root.x - point[0]) * np.cos(heading) - (root.z - point[1]) * np.sin(heading)
         pull = float(np.clip(_PULL * beside, -_MOST, _MOST))
-        return Command(forward=1.0, direction=float(self._line.heading(self._way + _LEAD)) - pull)
+        return Command(forward=1.0, direction=float(ahead) - pull)
