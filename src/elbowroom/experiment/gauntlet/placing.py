@@ -151,7 +151,8 @@ def _pushed(proposal: Proposal, around: Surroundings) -> Placed | None:
     """The obstacle where it can be pushed no further; None if it touches the certificate or misses the natural walk."""
     heading = round(float(around.line.heading(proposal.way)), GRAIN)
     turn = (proposal.turn[0], round(proposal.turn[1] + heading, GRAIN), proposal.turn[2])
-    begin, end = around.line.local(proposal.way, np.add(proposal.begin, [np.zeros(3), proposal.push]))
+    ends = np.stack([np.asarray(proposal.begin), np.add(proposal.begin, proposal.push)])
+    begin, end = around.line.local(proposal.way, ends)
     push = end - begin
     box = Placed(proposal.name, (0.0, 0.0, 0.0), turn, proposal.size).row()
     box[:3] = begin
