@@ -8,6 +8,7 @@ import pytest
 from numpy.typing import NDArray
 
 from avatar_builder import Recipe, build
+from elbowroom.body.dof import DofGroup, group_of_bone
 from elbowroom.body.fitting.coverage import WANTED
 from elbowroom.body.fitting.slim_capsule import distances
 from elbowroom.body.humanoid import Humanoid
@@ -62,7 +63,11 @@ def _outside(humanoid: Humanoid, skin: Skin, posed: Posed) -> Floats:
     areas = np.linalg.norm(np.cross(sides[:, 0], sides[:, 1]), axis=1)
     rng = np.random.default_rng(3)
     which, shares = rng.choice(len(areas), _POINTS, p=areas / areas.sum()), rng.dirichlet([1, 1, 1], _POINTS)
-    points = np.einsum("nsci,sc->nsi", corners[:, which], shares)
+    return _gaps(humanoid, np.einsum("nsci,sc->nsi", corners[:, which], shares), posed)
+
+
+def _gaps(humanoid: Humanoid, points: Floats, posed: Posed) -> Floats:
+    """How far points (P, S, 3) of some poses are outside the capsules (P, S), metres."""
     capsules, gaps = humanoid.capsules, np.full(points.shape[:2], np.inf)
     for pose, (places, turns) in enumerate(zip(posed.positions, posed.rotations, strict=True)):
         for i, joint in enumerate(capsules.joints):
@@ -71,11 +76,28 @@ def _outside(humanoid: Humanoid, skin: Skin, posed: Posed) -> Floats:
     return gaps
 
 
+def tips_outside(humanoid: Humanoid) -> tuple[Floats, NDArray[np.bool_]]:
+    """How far vertices of the surface are outside the capsules in T-pose (V,), and which of them legs carry."""
+    skin, note = skin_of(humanoid)
+    assert skin is not None, note
+    used, posed = np.unique(skin.triangles), _t_pose(humanoid)
+    gaps = _gaps(humanoid, skin.vertices(posed, used), posed)[0]
+    legs = [group_of_bone(bone) is DofGroup.ROOT for bone in humanoid.skeleton.names]
+    return gaps, np.array(legs)[skin.joints[used, 0]]
+
+
 def assert_held(humanoid: Humanoid) -> None:
     gaps = outside(humanoid)
     assert np.mean(gaps <= 0.01, axis=1).min() >= 0.995
     assert gaps.max() < 0.04
     assert len(humanoid.capsules.names) <= 24
+
+
+def assert_tips_held(humanoid: Humanoid) -> None:
+    """No vertex stands farther out than motions keep away: 5 mm, legs 10."""
+    gaps, legs = tips_outside(humanoid)
+    assert gaps[~legs].max() < 0.0055
+    assert gaps[legs].max() < 0.0105
 
 
 @pytest.mark.parametrize(
@@ -88,6 +110,7 @@ def test_bodies_of_few_triangles_are_held(body: Body, worst: float) -> None:
     assert humanoid.meta.has_body
     assert_held(humanoid)
     assert outside(humanoid).max() < worst
+    assert_tips_held(humanoid)
 
 
 def test_the_belly_of_a_low_poly_figure_is_as_wide_as_its_triangles() -> None:
@@ -116,6 +139,7 @@ def test_real_avatars_are_held(path: Path) -> None:
     if not humanoid.meta.has_body:
         pytest.skip("it has no mesh that is its body")
     assert_held(humanoid)
+    assert_tips_held(humanoid)
     found = facts_of(humanoid, surface).coverage
     assert found is not None
     assert found.share >= WANTED

@@ -4,6 +4,7 @@ from elbowroom.body.fitting.body_parts import BodyPoints, part_of_points
 from elbowroom.body.fitting.coverage import coverage
 from elbowroom.body.fitting.fit import fit_capsules
 from elbowroom.body.fitting.proportions import proportional_capsules, proportional_skeleton
+from elbowroom.body.fitting.surface import Surface
 
 SKELETON = proportional_skeleton(1.7)
 
@@ -23,7 +24,7 @@ def _surface_of_capsules(rng: np.random.Generator, each: int) -> BodyPoints:
 
 def test_capsules_are_found_again_from_their_surface() -> None:
     points = _surface_of_capsules(np.random.default_rng(0), 300)
-    capsules, bare, _ = fit_capsules(SKELETON, points)
+    capsules, bare, _ = fit_capsules(SKELETON, Surface(points, points))
     average = proportional_capsules(SKELETON)
     assert bare == ()
     assert capsules.names == average.names
@@ -37,7 +38,8 @@ def test_capsules_are_found_again_from_their_surface() -> None:
 def test_parts_without_points_keep_average_proportions() -> None:
     head = SKELETON.index("head")
     ball = 0.1 * np.random.default_rng(1).normal(size=(200, 3)) + SKELETON.positions[head]
-    capsules, bare, _ = fit_capsules(SKELETON, BodyPoints(ball, np.full(200, head)))
+    points = BodyPoints(ball, np.full(200, head))
+    capsules, bare, _ = fit_capsules(SKELETON, Surface(points, points))
     average = proportional_capsules(SKELETON)
     assert set(bare) == set(average.names) - {"head", "shoulders"}
     others = [i for i, name in enumerate(average.names) if name != "head"]
@@ -58,6 +60,6 @@ def test_points_belong_to_the_part_of_their_bone() -> None:
 
 def test_the_fit_repeats_exactly() -> None:
     points = _surface_of_capsules(np.random.default_rng(2), 60)
-    once, again = fit_capsules(SKELETON, points)[0], fit_capsules(SKELETON, points)[0]
+    once, again = (fit_capsules(SKELETON, Surface(points, points))[0] for _ in range(2))
     assert np.array_equal(once.radii, again.radii)
     assert np.array_equal(once.ends, again.ends)

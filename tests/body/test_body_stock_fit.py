@@ -59,7 +59,7 @@ def test_hands_are_held_as_closely_as_they_pass_things(fitted_anew: bool) -> Non
     """Motions keep 5 mm from obstacles: a knuckle that stands farther out than that may be seen in one."""
     humanoid, surface = load_with_surface(stock_avatar_path())
     skeleton = humanoid.skeleton
-    capsules = fit_capsules(skeleton, surface.samples).capsules if fitted_anew else humanoid.capsules
+    capsules = fit_capsules(skeleton, surface).capsules if fitted_anew else humanoid.capsules
     for bone in ("leftHand", "rightHand"):
         joint = skeleton.index(bone)
         points = surface.samples.positions[surface.samples.joints == joint] - skeleton.positions[joint]
@@ -71,7 +71,7 @@ def test_hands_are_held_as_closely_as_they_pass_things(fitted_anew: bool) -> Non
 
 def test_nothing_of_a_fit_is_lost_on_its_way_through_the_file() -> None:
     humanoid, surface = load_with_surface(stock_avatar_path())
-    fit = fit_capsules(humanoid.skeleton, surface.samples)._replace(bare=("neck", "head"))
+    fit = fit_capsules(humanoid.skeleton, surface)._replace(bare=("neck", "head"))
     again = fit_of(json.loads(json.dumps(fit_document(b"", humanoid.skeleton, fit))), humanoid.skeleton)
     assert again.bare == fit.bare
     for name in ("joints", "starts", "ends", "radii"):

@@ -18,7 +18,7 @@ from make_stock_avatar.assemble import stock_avatar
 def _fit(path: Path) -> str:
     """The fit of an avatar file as JSON, made anew."""
     humanoid, surface = load_with_surface(path)
-    fit = fit_capsules(humanoid.skeleton, surface.samples)
+    fit = fit_capsules(humanoid.skeleton, surface)
     return json.dumps(fit_document(path.read_bytes(), humanoid.skeleton, fit), indent=1) + "\n"
 
 

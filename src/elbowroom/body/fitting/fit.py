@@ -12,9 +12,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.capsules import Capsules
-from elbowroom.body.fitting.body_parts import SIDES, BodyPoints, part_of_points
+from elbowroom.body.dof import DofGroup
+from elbowroom.body.fitting.body_parts import SIDES, part_of_points
 from elbowroom.body.fitting.proportions import proportional_capsules
 from elbowroom.body.fitting.slim_capsule import Slim, Wanted, slimmest
+from elbowroom.body.fitting.surface import Surface
+from elbowroom.body.fitting.tips import Tips, with_tips
 from elbowroom.body.skeleton import Skeleton
 
 Floats = NDArray[np.float64]
@@ -42,6 +45,7 @@ class FitSettings:
     worth_it: float = 0.85  # two capsules are taken for one if they have less than this part of its volume
     margin: float = MARGIN
     arm_margin: float = 0.5 * MARGIN  # the same for arms: nothing passes things as closely, and that is all they keep
+    tip_margin: float = 0.5 * MARGIN  # metres that any vertex of the upper body may be outside: that is all it keeps
 
     @property
     def slack(self) -> float:
@@ -73,18 +77,18 @@ class _Shapes(NamedTuple):
         return 0.0 if self.two is None else self.one.volume - self.two[0].volume - self.two[1].volume
 
 
-def fit_capsules(skeleton: Skeleton, samples: BodyPoints, settings: FitSettings | None = None) -> Fit:
+def fit_capsules(skeleton: Skeleton, surface: Surface, settings: FitSettings | None = None) -> Fit:
     """Capsules for `skeleton` fitted to its surface."""
     settings = settings or FitSettings()
     average = proportional_capsules(skeleton)
-    parts = part_of_points(skeleton, average, samples)
+    parts = part_of_points(skeleton, average, surface.samples)
     rest = skeleton.positions[average.joints]
     shapes: dict[str, _Shapes] = {}
     bare: list[str] = []
     slight: list[str] = []
     for part, name in enumerate(average.names):
         first = Slim(average.starts[part] + rest[part], average.ends[part] + rest[part], float(average.radii[part]))
-        own = samples.positions[parts == part]
+        own = surface.samples.positions[parts == part]
         if name == _SHOULDERS:
             shapes[name] = _Shapes(first, None)
             continue
@@ -94,8 +98,22 @@ def fit_capsules(skeleton: Skeleton, samples: BodyPoints, settings: FitSettings 
         shapes[name] = _Shapes(_grown(first, own, close), None) if few else _fitted(own, first, name, close)
     thickness = float(np.mean([shapes[f"{side}UpperArm"].one.radius for side in SIDES]))
     shapes[_SHOULDERS] = _Shapes(shapes[_SHOULDERS].one._replace(radius=thickness), None)
-    slims = _chosen(shapes, settings.capsules)
+    tips = _tips(skeleton, average, surface, settings)
+    slims = with_tips(_chosen(shapes, settings.capsules), tips, settings.capsules, settings.worth_it)
     return Fit(_assembled(skeleton, average, slims), tuple(bare), tuple(slight))
+
+
+def _tips(skeleton: Skeleton, average: Capsules, surface: Surface, settings: FitSettings) -> dict[str, Tips]:
+    """The vertices of each part that has any."""
+    parts, sampled = (part_of_points(skeleton, average, points) for points in (surface.vertices, surface.samples))
+    found = {}
+    for part in np.unique(parts[parts >= 0]).tolist():
+        name = average.names[part]
+        margin = settings.margin if average.groups[part] is DofGroup.ROOT else settings.tip_margin
+        thinnest = 0.5 * settings.thinnest * float(average.radii[part])
+        points, samples = surface.vertices.positions[parts == part], surface.samples.positions[sampled == part]
+        found[name] = Tips(points, samples, margin, thinnest)
+    return found
 
 
 def _is_slight(first: Slim, own: Floats, settings: FitSettings) -> bool:

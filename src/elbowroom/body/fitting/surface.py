@@ -29,10 +29,10 @@ _GOLDEN = (0.7548776662466927, 0.5698402909980532)  # steps of the sequence R2: 
 
 @dataclass(frozen=True, eq=False)
 class Surface:
-    """What a body looks like from outside, T-posed, metres, in the skeleton's frame."""
+    """What a body looks like from outside, T-posed with its fingers relaxed, metres, in the skeleton's frame."""
 
     vertices: BodyPoints  # each with the joint of the greatest weight
-    samples: BodyPoints  # spread evenly over its area, with the fingers relaxed and the legs in several poses
+    samples: BodyPoints  # spread evenly over its area, with the legs in several poses
 
     def scaled(self, factor: float) -> "Surface":
         """The surface of an avatar so many times as large."""
@@ -52,14 +52,14 @@ def surface_of(body: BodyMesh, skeleton: Skeleton, count: int = SAMPLES) -> Surf
     corners = vertices[body.triangles]
     areas = triangle_areas(corners)
     if not areas.sum() > 0.0:
-        return Surface(vertex_points(body), BodyPoints(np.zeros((0, 3)), np.zeros(0, np.int64)))
+        return Surface(vertex_points(relaxed), BodyPoints(np.zeros((0, 3)), np.zeros(0, np.int64)))
     which, shares = _spread(areas, count)
     found = [
         _carried(relaxed, skeleton, relaxed.triangles[which[some]], shares[some])
         for some in (slice(first, first + _AT_ONCE) for first in range(0, count, _AT_ONCE))
     ]
     places, joints = (np.concatenate(column) for column in zip(*found, strict=True))
-    return Surface(vertex_points(body), BodyPoints(places, joints))
+    return Surface(vertex_points(relaxed), BodyPoints(places, joints))
 
 
 def _carried(body: BodyMesh, skeleton: Skeleton, corners: Ints, shares: Floats) -> tuple[Floats, Ints]:

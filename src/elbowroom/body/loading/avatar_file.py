@@ -86,7 +86,7 @@ def _humanoid(
     skeleton = skeleton_of(figure, rig)
     surface = surface_of(body.moved(rig.to_model), skeleton)
     as_it_is = not bones.told and not settings.include_hair
-    fit = (stock_fit(gltf.glb, skeleton) if as_it_is else None) or fit_capsules(skeleton, surface.samples)
+    fit = (stock_fit(gltf.glb, skeleton) if as_it_is else None) or fit_capsules(skeleton, surface)
     capsules, capsule_notes = _capsules(skeleton, fit)
     unit = () if rig.scale == 1.0 else (f"one unit of the file is taken for {rig.scale:g} m, from the figure's height",)
     told = hanim.meta if hanim else _meta(gltf, vrm)
