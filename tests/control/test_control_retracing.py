@@ -55,6 +55,18 @@ def test_who_walks_or_has_come_to_a_stand_stays_or_goes_on() -> None:
     assert not retracing.goes_back
 
 
+def test_who_trembles_before_a_wall_stands_there() -> None:
+    """A step aside that leads no farther: the root's velocity dies away, begins again, and is never quite nothing."""
+    retracing, _ = walked(100)
+    at_the_wall = pose(0.8, 0.0)
+    retracing.show(Past(pose(0.8), DT), at_the_wall)
+    for k in range(600):
+        trembling = Playback(at_the_wall.root.copy(), UPPER, UPPER)
+        trembling.root[[3, 5]] = 0.01 * math.sin(k), 0.005 * math.cos(k)
+        retracing.show(Past(at_the_wall, DT), trembling)
+        assert not retracing.goes_back
+
+
 @pytest.mark.parametrize("dt", [DT, 0.5 * DT])
 def test_who_stays_in_a_stride_goes_back_as_fast_as_he_came_and_each_time_farther(dt: float) -> None:
     retracing, poses = walked(200)

@@ -18,13 +18,14 @@ from elbowroom.body.gait.carriage import POSING
 from elbowroom.body.gait.foot_state import SWING
 from elbowroom.body.root import FOOT, HEIGHT, RISES, ROOT_STATE, WITH_FEET
 from elbowroom.control.key_frame_queue import Playback
-from elbowroom.planning.stillness import SAME, SAME_TIME, is_still
+from elbowroom.planning.stillness import SAME, SAME_TIME
 from elbowroom.world.ground.ground import STEP
 
 _REMEMBERED = 10.0  # seconds that were shown
 _PATIENCE = 0.5  # seconds in which legs come to a stand, where they can
 _LONG, _ON_THE_WAY = 3.0, 1.2  # seconds in which a way is found, by who steers; by who is on the way to a place
 _BACK = 0.4  # seconds that one goes back at first; each time that this was not enough twice as long
+_STRIDING = 0.02  # m/s, rad/s: who is slower stands, or is about to, and trembles at most
 _HERE = 0.005  # metres, radians: who has moved no farther is where he was
 _ELSEWHERE = 0.5  # metres from where one has gone back from
 _DITHERED = 1.0  # seconds on one spot that are remembered, besides the pose in which one came there
@@ -70,7 +71,8 @@ class Retracing:
         away = max(math.dist((x, z), self._place[:2]), abs(heading - self._place[2]))
         if away > _HERE:
             self._place, self._waits = (x, z, heading), 0.0
-        self._stays = 0.0 if away > _HERE or is_still(shown.root[3:6]) else self._stays + seconds
+        in_stride = np.abs(shown.root[3:6]).max() > _STRIDING
+        self._stays = self._stays + seconds if in_stride and away <= _HERE else 0.0
         if self._stays > _PATIENCE:
             self._turn_back(x, z)
 
