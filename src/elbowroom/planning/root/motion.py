@@ -56,6 +56,7 @@ class Travel(NamedTuple):
     turns: bool  # whether the body turns to where it goes, or its back
     stops: bool  # whether it must stand at the route's end
     slow: Floats  # (K, 3) places x, z on which it is walked at a share of the speed
+    near: float  # how near a point of the route is aimed at, a share of how near it is usual
 
 
 @exact_kernel
@@ -206,8 +207,8 @@ def follow(states: Floats, route: Floats, travel: Travel, interval: float, bound
     for k in range(states.shape[0] - 1):
         x, z, heading = states[k, 0], states[k, 1], states[k, 2]
         share = _share_at(travel.slow, states[k], interval)
-        slowed = min(share / _NARROW, 1.0)
-        aim_x, aim_z, left = _aim(route, x, z, slowed * (_AIM + _AIM_LATER * travel.speed))
+        near = travel.near * min(share / _NARROW, 1.0)
+        aim_x, aim_z, left = _aim(route, x, z, near * (_AIM + _AIM_LATER * travel.speed))
         speed = travel.speed * share
         if travel.stops:
             now = np.sqrt(states[k, 3] ** 2 + states[k, 4] ** 2)

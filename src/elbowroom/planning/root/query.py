@@ -25,6 +25,8 @@ from elbowroom.planning.stillness import is_still
 Floats = NDArray[np.float64]
 
 _SLOW = 0.1  # m/s: who walks faster has room for a stride
+_WITH_CORNERS = 3  # points of a route that is not straight, at least
+_CLOSER = 0.35  # of how far ahead one aims on a way, to cut its corners by less
 _TURN_WORTH = 0.2  # metres that a radian of turning counts for when paths are compared
 
 
@@ -201,7 +203,7 @@ class RootQuery:
         """Walk along the line of travel, of which `sight` metres are checked, or round what stands in it.
 
         It is slower at `slow` places, as in `Travel`, and leads round `tight` ones where there is room. Or it is walked
-        along a `way` whose first leg is the line.
+        along a `way` whose first leg is the line, and the more closely where one who cuts its corners meets something.
         """
         route = self._route_along(line, sight, None if way is None else way.seen, tight)
         stops, corners = route.ends, route.corners
@@ -211,10 +213,15 @@ class RootQuery:
         facing = line.facing - line.heading if line.turns else line.facing
 
         def candidate(share: float, slow: Floats = slow) -> Floats:
-            return walked(Travel(share * speed, facing, line.turns, stops, slow))
+            travel = Travel(share * speed, facing, line.turns, stops, slow, 1.0)
+            states = walked(travel)
+            if way is None or len(corners) < _WITH_CORNERS or (kept := self._legs.kept(states)) == self.horizon:
+                return states
+            closer = walked(travel._replace(near=_CLOSER))
+            return closer if self._legs.kept(closer) > kept else states
 
         def creeping(share: float) -> Floats:
-            return walked(Travel(share * speed, self.start.heading, False, stops, slow))
+            return walked(Travel(share * speed, self.start.heading, False, stops, slow, 1.0))
 
         def walked(travel: Travel) -> Floats:
             states = self._blank()

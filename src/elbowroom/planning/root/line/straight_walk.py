@@ -61,11 +61,11 @@ def straight_walk(
     for c in range(start.shape[0]):
         states[0, c] = start[c]
     facing = line.facing - line.heading if line.turns else line.facing
-    travel = Travel(pace * speed, facing, line.turns, ends, slow[:0])
+    travel = Travel(pace * speed, facing, line.turns, ends, slow[:0], 1.0)
     follow(states, route, travel, stretch.interval, who.bounds)
     lost = lost_on_line(who.prices, line, speed, states, stretch.horizon * stretch.interval, ends)
     if slow.shape[0] > 0:
-        follow(states, route, Travel(pace * speed, facing, line.turns, ends, slow), stretch.interval, who.bounds)
+        follow(states, route, Travel(pace * speed, facing, line.turns, ends, slow, 1.0), stretch.interval, who.bounds)
     braking, swinging = who.bounds.braking, who.bounds.turn_acceleration
     moving, stopping = to_check(states, stretch.interval, braking, swinging, who.skin, who.hull, ground)
     free = not (moving.any() or stopping.any())
