@@ -10,6 +10,7 @@ from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.root import RootState
 from elbowroom.planning.command import Command
 from elbowroom.planning.root.line.way_ahead import leg_at, way_ahead
+from elbowroom.planning.root.plan import RootPlanKind
 from elbowroom.planning.root.planner import RootPlanner
 from elbowroom.world.scene import Scene
 
@@ -59,6 +60,21 @@ def test_a_path_along_a_way_goes_on_as_it_was_round_the_corner_and_stands_at_the
     assert math.hypot(state.forward, state.lateral) < 0.1
     corner = min(math.dist(place, WAY[1]) for place in walked)
     assert corner < 0.4
+
+
+def test_who_would_meet_a_corner_by_cutting_it_keeps_closer_to_the_way() -> None:
+    """A passage of 0.46 m between the corners of two blocks, aslant, as a door in a corner of a house has it."""
+    blocks = [((-2.0, 0.0), (-6.0, -0.3)), ((0.46, 3.0), (0.15, 4.0))]  # from where to where along x and z
+    obstacles = [
+        {"type": "box", "center": [0.5 * (a + b), 1.1, 0.5 * (c + d)], "size": [b - a, 2.2, d - c], "yaw": 0.0}
+        for (a, b), (c, d) in blocks
+    ]
+    scene = Scene.from_dict({**Scene.load("empty").to_dict(), "obstacles": obstacles})
+    way = ((-1.3, 0.0), (-0.1, 0.0), (0.26, -0.18), (0.74, -0.72), (1.5, -0.66))
+    start = RootState(-0.48, 0.01, 0.5 * math.pi, 0.66)
+    plan = RootPlanner(Humanoid.default(), scene).plan(start, Command(forward=1.0, way=way), 16, INTERVAL)
+    assert plan.kind is RootPlanKind.STRAIGHT
+    assert plan.path.states[-1, 0] > 1.0
 
 
 def test_a_slower_walk_along_a_way_loses_what_it_is_slower_by() -> None:
