@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from elbowroom.body.loading.avatar_file import load_humanoid
-from elbowroom.experiment.crossing import controller_for, run_crossing
+from elbowroom.experiment.crossing import CrossingResult, controller_for, run_crossing
 from elbowroom.experiment.crossing_settings import CrossingSettings
 from elbowroom.world.scene import Scene
 from sampled import sampled
@@ -13,24 +13,26 @@ from shared_data import SHARED, needs_shared
 
 HANIM = sorted(SHARED.glob("avatars/hanim_*/*")) if SHARED else []
 OTHERS = sorted([*SHARED.glob("avatars/glb/*"), *SHARED.glob("avatars/vrm[01]/*")]) if SHARED else []
+RODS = "debug_robot.vrm"  # each of its limbs is three crossing rods half a metre long: they run into each other
 
 
-def assert_straight(path: Path) -> None:
+def crossed(path: Path) -> CrossingResult:
     settings = CrossingSettings(seed=0)
     result = run_crossing(controller_for(load_humanoid(path), Scene.load("a"), settings), settings)
     assert result.passed
-    assert result.straight
     assert result.least_clearance >= 0.0
+    return result
 
 
 @needs_shared
 @pytest.mark.parametrize("path", sampled(HANIM), ids=lambda path: path.name)
 def test_h_anim_crosses_scene_a_straight(path: Path) -> None:
-    assert_straight(path)
+    assert crossed(path).straight
 
 
 @needs_shared
 @pytest.mark.long
 @pytest.mark.parametrize("path", OTHERS, ids=lambda path: path.name)
 def test_all_others_cross_scene_a_straight(path: Path) -> None:
-    assert_straight(path)
+    result = crossed(path)
+    assert result.straight or path.name == RODS
