@@ -23,6 +23,7 @@ from elbowroom.server.apart.process import ApartError, FullDiskError
 from elbowroom.server.entrance.admission import Admission
 from elbowroom.server.entrance.door_word import BehindDoor
 from elbowroom.server.entrance.guard import Guard, is_loopback
+from elbowroom.server.entrance.in_pieces import InPieces
 from elbowroom.server.entrance.open_pages import OpenPages, Tab
 from elbowroom.server.entrance.reception import Reception
 from elbowroom.server.entrance.while_there import while_there
@@ -188,7 +189,7 @@ class _Handlers:
         if session is None:
             return JSONResponse({"error": "this page has no walk here"}, 404)
         try:
-            return Response(session.recording(), media_type="application/octet-stream")
+            return InPieces(session.recording(), media_type="application/octet-stream")
         except InputError as error:
             return JSONResponse({"error": str(error)}, 404)
 

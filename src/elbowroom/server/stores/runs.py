@@ -12,6 +12,7 @@ from starlette.responses import Response
 from elbowroom.control.recordings.avatar_reference import AvatarReference
 from elbowroom.errors import InputError
 from elbowroom.server.apart.process import run_apart
+from elbowroom.server.entrance.in_pieces import InPieces
 from elbowroom.server.schema.runs import Run
 from elbowroom.server.sessions.reports import avatar_message, scene_message
 from elbowroom.server.standalone.frames import PosedRun
@@ -44,7 +45,7 @@ async def shown_run(library: Library, file: Path, name: str) -> ShownRun:
 def run_response(shown: ShownRun) -> Response:
     """The answer to a page."""
     head = json.dumps(plain(shown.run), separators=(",", ":"), allow_nan=False).encode()
-    return Response(_LENGTH.pack(len(head)) + head + shown.frames, media_type="application/octet-stream")
+    return InPieces(_LENGTH.pack(len(head)) + head + shown.frames, media_type="application/octet-stream")
 
 
 def _references(library: Library) -> dict[str, dict[str, object]]:

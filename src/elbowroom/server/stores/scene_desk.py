@@ -41,7 +41,7 @@ class SceneDesk:
         async def taken(sender: Sender) -> Response:  # noqa: ARG001
             with self._reception.files() as (file, _):
                 document = await self._read(request, file)
-            scene = self._library.built.add(Scene.from_dict(document, _NAME))
+            scene = self._library.built.add(await asyncio.to_thread(Scene.from_dict, document, _NAME))
             await asyncio.to_thread(share_scene, self._library, scene)
             return JSONResponse(plain(SceneChoice(scene.name, scene.title)), 201)
 

@@ -10,6 +10,7 @@ from starlette.responses import JSONResponse, Response
 from elbowroom.errors import InputError
 from elbowroom.server.apart.jobs import PLACE
 from elbowroom.server.apart.process import run_apart
+from elbowroom.server.entrance.in_pieces import InPieces
 from elbowroom.server.entrance.page_key import Sender
 from elbowroom.server.entrance.reception import Reception
 from elbowroom.server.entrance.while_there import while_there
@@ -70,7 +71,7 @@ class UploadDesk:
             headers = {"content-disposition": f"attachment; filename*=UTF-8''{quote(name)}"}
             if written.notes:
                 headers["x-elbowroom-note"] = quote("; ".join(written.notes))
-            return Response(written.data, media_type="application/octet-stream", headers=headers)
+            return InPieces(written.data, media_type="application/octet-stream", headers=headers)
 
         return await self._reception.admitted(request, saved)
 
@@ -86,7 +87,7 @@ class UploadDesk:
             headers = {"content-disposition": "attachment; filename=walk.html"}
             if notes:
                 headers["x-elbowroom-note"] = quote("; ".join(notes))
-            return Response(page, media_type="application/octet-stream", headers=headers)
+            return InPieces(page, media_type="application/octet-stream", headers=headers)
 
         return await self._reception.admitted(request, written)
 
@@ -101,7 +102,7 @@ class UploadDesk:
                     read = run_apart("read_place", name, str(file), name, str(glb))
                     document = await while_there(request, read)
             if kind == PLACE:
-                scene = self._library.add_place(Scene.from_dict(document, name), glb)
+                scene = self._library.add_place(await asyncio.to_thread(Scene.from_dict, document, name), glb)
                 await asyncio.to_thread(share_scene, self._library, scene)
                 return Uploaded(None, [], SceneChoice(scene.name, scene.title))
             avatar, own = None, []
