@@ -101,6 +101,15 @@ def test_what_is_no_run_is_refused(data: bytes) -> None:
         read_run(data)
 
 
+def test_a_head_of_millions_of_things_is_not_even_read() -> None:
+    """It would hold the frames of others up, and take a hundred times its size."""
+    head = b'{"scene": {}, "avatar": {}, "name": "x", "more": [' + b"{}," * 1_500_000 + b"{}]}"
+    with pytest.raises(er.InputError, match="longer than 4194304 bytes"):
+        read_run(len(head).to_bytes(4, "little") + head)
+    short = b'{"scene": {}, "avatar": {}, "name": "x"}'
+    assert read_run(len(short).to_bytes(4, "little") + short + b"1")[1] == b"1"
+
+
 @BUILT
 def test_a_page_fetches_nothing_and_stays_small(walk: Path) -> None:
     page, notes = page_of_recording(Recording(walk), er.Humanoid.default(), "walk.elbow")

@@ -24,6 +24,7 @@ SCALARS = (
 UNIT = 32767.0  # a rotation's component of 1
 PER_METRE = 4000.0  # of a capsule's end: a quarter of a millimetre; 8 metres to each side at most
 MOST_FRAMES = 3000  # a longer run is told by every second frame, or every third ...
+MOST_HEAD = 4 * 2**20  # bytes: a scene of ten thousand boxes has fewer
 RATE = 30.0  # frames a second, at most
 Floats32 = NDArray[np.float32]
 
@@ -40,6 +41,8 @@ class Run(NamedTuple):
 
 def read_run(data: bytes) -> tuple[dict[str, Any], bytes]:
     """Head and frames of a run as it travels (`schema.runs`); raises `InputError`."""
+    if MOST_HEAD < int.from_bytes(data[: _LENGTH.size], "little") <= len(data):
+        raise InputError(f"run: its head is longer than {MOST_HEAD} bytes")
     try:
         (length,) = _LENGTH.unpack_from(data)
         head = json.loads(data[_LENGTH.size : _LENGTH.size + length])
