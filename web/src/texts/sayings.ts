@@ -77,6 +77,7 @@ export const SAYINGS: Readonly<Record<string, string>> = {
   "the file was changed: its {0} steps are not those that were recorded": "檔案被更改過：其 {0} 步與當時記錄的不同",
   "the file goes on after its end": "檔案在結尾之後還有內容",
   "run: what was sent is no run": "送來的內容不是行走紀錄",
+  "run: its head is longer than {0} bytes": "紀錄的開頭超過 {0} 位元組",
   "run: its numbers are out of range": "紀錄中的數值超出範圍",
   "run: its frames are not of this avatar": "紀錄的影格不屬於此角色",
   "run: its frames are damaged": "紀錄的影格已損壞",
