@@ -58,7 +58,8 @@ def _holding(slims: tuple[Slim, ...], far: Floats, own: Tips, worth_it: float) -
 def _grown(slims: tuple[Slim, ...], far: Floats, margin: float) -> tuple[Slim, ...]:
     """The capsules, of which the nearest to each of the points (F, 3) is as thick as to hold it."""
     gaps = np.array([slim.outside(far) for slim in slims])
-    lacking = np.where(gaps == gaps.min(axis=0), gaps - margin, 0.0).max(axis=1)
+    nearest = np.arange(len(slims))[:, None] == gaps.argmin(axis=0)
+    lacking = np.where(nearest, gaps - margin, 0.0).max(axis=1)
     return tuple(slim._replace(radius=slim.radius + float(more)) for slim, more in zip(slims, lacking, strict=True))
 
 
