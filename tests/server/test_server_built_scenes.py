@@ -17,8 +17,6 @@ from elbowroom.experiment.unseen_walk import Effort, walk_unseen
 from elbowroom.server.apart.jobs import read_scene, walk_scene
 from elbowroom.server.app import make_app
 from elbowroom.server.schema.bounds import MAX_SCENE
-from elbowroom.server.stores import built_scenes
-from elbowroom.server.stores.built_scenes import BuiltScenes
 from elbowroom.server.stores.library import Library
 from elbowroom.world.scene import Scene
 
@@ -124,14 +122,3 @@ def test_nobody_walks_as_an_avatar_that_is_not_here(library: Library) -> None:
 
 def test_a_place_is_not_edited(library: Library) -> None:
     assert ask(library, "GET", "/api/scenes/unknown/document").status_code == 404
-
-
-def test_only_the_last_scenes_are_kept(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(built_scenes, "MOST", 2)
-    scenes = BuiltScenes()
-    names = [scenes.add(Scene.from_dict(document(title=title))).name for title in ("one", "two", "one", "three")]
-    assert names[0] == names[2]
-    assert scenes.get(names[2]) is not None
-    with pytest.raises(InputError, match="not here any more"):
-        scenes.get(names[1])
-    assert scenes.get("d") is None

@@ -2,7 +2,6 @@
 
 import asyncio
 from collections.abc import Iterator
-from pathlib import Path
 from typing import Any
 
 import httpx
@@ -76,17 +75,3 @@ def test_what_holds_nothing_to_walk_in_is_refused(library: Library) -> None:
     answer = ask(library, "POST", "/api/avatars?name=empty.wrl", content=b"#VRML V2.0 utf8\n")
     assert answer.status_code == 422
     assert "empty.wrl" in answer.json()["error"]
-
-
-def test_only_the_last_few_are_kept(library: Library, tmp_path: Path) -> None:
-    rooms = Scene.load(write_place(tmp_path / "rooms.glb"))
-    files = [library.avatars.folder / f"{number:032x}.glb" for number in range(10)]
-    kept = []
-    for file in files:
-        file.write_bytes(b"glTF")
-        kept.append(library.add_place(rooms, file).name)
-    assert [file.exists() for file in files] == [False, False] + [True] * 8
-    for name in kept[:2]:
-        assert ask(library, "GET", f"/api/scenes/{name}").status_code == 404
-    assert "drop its file" in ask(library, "GET", f"/api/scenes/{kept[0]}").json()["error"]
-    assert ask(library, "GET", f"/api/scenes/{kept[-1]}").status_code == 200

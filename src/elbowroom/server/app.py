@@ -21,6 +21,7 @@ from elbowroom.body.loading.permissions import Use
 from elbowroom.errors import InputError
 from elbowroom.server.apart.process import ApartError, FullDiskError
 from elbowroom.server.entrance.admission import Admission
+from elbowroom.server.entrance.cut_short import CutShort
 from elbowroom.server.entrance.door_word import BehindDoor
 from elbowroom.server.entrance.guard import Guard, is_loopback
 from elbowroom.server.entrance.in_pieces import InPieces
@@ -39,6 +40,7 @@ from elbowroom.server.stores.avatar_store import StoredAvatar
 from elbowroom.server.stores.courses import BusyError
 from elbowroom.server.stores.library import Library
 from elbowroom.server.stores.runs import run_response, shown_run
+from elbowroom.server.stores.saving_desk import SavingDesk
 from elbowroom.server.stores.scene_desk import SceneDesk
 from elbowroom.server.stores.sharing import bring_file, bring_scene, shared_avatar
 from elbowroom.server.stores.uploads import UploadDesk
@@ -79,7 +81,7 @@ def make_app(
     Where `word` is not empty, both are those of a door before it, see `BehindDoor`.
     """
     handlers, reception = _Handlers(library, admission or Admission(library.meter)), Reception(library)
-    desk, scenes = UploadDesk(library, reception), SceneDesk(library, reception)
+    desk, scenes, saving = UploadDesk(library, reception), SceneDesk(library, reception), SavingDesk(library, reception)
     routes: list[BaseRoute] = [
         Route("/health", handlers.health),
         Route("/api/health", handlers.health),
@@ -92,9 +94,9 @@ def make_app(
         Route("/api/avatars", desk.take, methods=["POST"]),
         Route("/api/runs", desk.show, methods=["POST"]),
         Route("/api/run", handlers.run),
-        Route("/api/pages", desk.page, methods=["POST"]),
+        Route("/api/pages", saving.page, methods=["POST"]),
         Route("/api/walk.elbow", handlers.walk),
-        Route("/api/motions", desk.save, methods=["POST"]),
+        Route("/api/motions", saving.save, methods=["POST"]),
         Route("/avatars/{avatar}.glb", handlers.avatar),
         Route("/places/{place}.glb", handlers.place),
         WebSocketRoute("/ws", handlers.session),
@@ -103,7 +105,8 @@ def make_app(
     if not client_is_built():
         LOG.warning(HOW_TO_BUILD)
     door = [Middleware(BehindDoor, word=word)] if word else []
-    return Starlette(routes=routes, middleware=[*door, Middleware(Guard, bound_host=bound_host, name=name)])
+    guard = Middleware(Guard, bound_host=bound_host, name=name)
+    return Starlette(routes=routes, middleware=[*door, guard, Middleware(CutShort)])
 
 
 class _Handlers:

@@ -42,6 +42,9 @@ _STEADY = 5.0  # seconds of walking between two looks at the clock
 _PATIENCE = 60.0  # seconds in which a scene should be shown
 _TOLD = 200  # characters of an error
 
+_PILLARS = 60
+_SIDES = ((1, 2, 4, 3), (5, 7, 8, 6), (1, 5, 6, 2), (3, 4, 8, 7), (1, 3, 7, 5), (2, 6, 8, 4))  # of a box: its corners
+
 # Files that ask for too much: objects of few bytes, and a document type that gives every element 2 MB.
 _OBJECTS = b'{"asset":{"version":"2.0"},"a":[' + b"{}," * 1_000_000 + b"{}]}"
 _TYPES = (
@@ -264,18 +267,32 @@ def _until_shown(client: ClientConnection, scene: str) -> None:
 
 
 def _upload(yard: _Yard, chance: random.Random) -> None:
-    """Sends an avatar and walks with it; now and then a file that asks for too much."""
-    told = _post(yard.url, "mine.vrm", stock_avatar_path().read_bytes())
+    """Sends an avatar and a place and walks with them; now and then a file that asks for too much."""
+    avatar = _post(yard.url, "mine.vrm", stock_avatar_path().read_bytes())["avatar"]["id"]
+    place = _post(yard.url, "hall.obj", _hall(chance))["scene"]["name"]
     yard.count("uploads")
     with client_of(yard.url) as client:
         yard.count("sessions")
-        client.send(encode(Configure(avatar=told["avatar"]["id"])))
+        client.send(encode(Configure(avatar=avatar, scene=place)))
+        _until_shown(client, place)
         walk_about(client, chance.uniform(1.0, 3.0))
     if chance.random() < 0.3:
         for name, data in (("objects.gltf", _OBJECTS), ("types.x3d", _TYPES)):
             with contextlib.suppress(HTTPError):
                 _post(yard.url, name, data)
             yard.count("misdeeds")
+
+
+def _hall(chance: random.Random) -> bytes:
+    """The model of a hall with pillars here and there, as OBJ."""
+    boxes = [(0.0, -0.1, 0.0, 12.0, 0.1, 12.0)]
+    for _ in range(_PILLARS):
+        boxes.append((chance.uniform(-11.0, 11.0), 1.0, chance.uniform(-11.0, 11.0), 0.2, 1.0, 0.2))
+    lines = []
+    for number, (x, y, z, a, b, c) in enumerate(boxes):
+        lines += [f"v {x + i * a} {y + j * b} {z + k * c}" for i in (-1, 1) for j in (-1, 1) for k in (-1, 1)]
+        lines += ["f " + " ".join(str(8 * number + corner) for corner in side) for side in _SIDES]
+    return "\n".join(lines).encode()
 
 
 def _post(url: str, name: str, data: bytes) -> dict[str, dict[str, str]]:

@@ -104,6 +104,36 @@ def walk_scene(file: str, name: str, humanoid: str) -> tuple[object, ...]:
     return tuple(getattr(walk, field.name) for field in fields(walk))
 
 
+def save_motion(file: str, humanoid: str, glb: str, ending: str, made: str) -> tuple[str, ...]:
+    """Write a walk that a page has sent as an animation to `made`; what there is to say about it.
+
+    `humanoid` is a file of `answers.packed`, and `glb` the avatar's own, or "". Raises `InputError`.
+    """
+    from elbowroom.server.stores import saved_motion
+
+    exported = saved_motion.save_motion(Path(file).read_bytes(), _avatar_in(humanoid, glb), ending)
+    Path(made).write_bytes(exported.data)
+    return exported.notes
+
+
+def write_page(file: str, humanoid: str, glb: str, avatar_id: str, made: str) -> tuple[str, ...]:
+    """The same for a run, as a page that plays it."""
+    from elbowroom.server.standalone.page import page_of_sent
+    from elbowroom.server.stores.avatar_store import StoredAvatar
+
+    avatar = StoredAvatar(avatar_id, _avatar_in(humanoid, glb), None)
+    page, notes = page_of_sent(Path(file).read_bytes(), avatar)
+    Path(made).write_text(page, "utf-8")
+    return notes
+
+
+def _avatar_in(humanoid: str, glb: str) -> "Humanoid":
+    from elbowroom.server.apart.answers import unpacked
+
+    found: Humanoid = unpacked(Path(humanoid).read_bytes())
+    return replace(found, glb=Path(glb).read_bytes()) if glb else found
+
+
 def pose_run(file: str, name: str, known: str) -> tuple[object, ...]:
     """The frames of a recording as `run_frames.PosedRun` has them, its fields in order; raises `InputError`.
 
@@ -120,6 +150,5 @@ def pose_run(file: str, name: str, known: str) -> tuple[object, ...]:
     return tuple(getattr(run, field.name) for field in fields(run))
 
 
-JOBS: dict[str, Callable[..., object]] = {
-    job.__name__: job for job in (read_upload, read_place, read_scene, walk_scene, read_clip, make_course, pose_run)
-}
+_ALL = (read_upload, read_place, read_scene, walk_scene, read_clip, make_course, pose_run, save_motion, write_page)
+JOBS: dict[str, Callable[..., object]] = {job.__name__: job for job in _ALL}

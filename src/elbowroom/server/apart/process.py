@@ -53,7 +53,7 @@ async def run_apart(job: str, name: str, *arguments: str, bounds: Bounds = _BOUN
             answer = await _answer_of(process, bounds.answer)
             await process.wait()
     except TimeoutError:
-        raise InputError(f"{name}: takes more than {bounds.wall:g} s to read") from None
+        raise InputError(f"{name}: takes more than {bounds.wall:g} s") from None
     except _TooLongError:
         raise InputError(f"{name}: unpacks to more than {bounds.answer >> 20} MiB") from None
     finally:
@@ -123,7 +123,7 @@ def _ended(code: int, name: str, bounds: Bounds) -> str:
 
 
 def _too_much_memory(name: str, bounds: Bounds) -> str:
-    return f"{name}: takes more than {bounds.memory >> 20} MiB of memory to read"
+    return f"{name}: takes more than {bounds.memory >> 20} MiB of memory"
 
 
 def _name_of(code: int) -> str:

@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
 from elbowroom.experiment.parallel import usable_cores
+from elbowroom.server.entrance.cut_short import ABOUT_TO_END
 from elbowroom.server.entrance.guard import is_loopback
 from elbowroom.server.sessions.meter import Meter, Reading
 
@@ -67,7 +68,7 @@ class Admission:
 
     def _refusal(self, machine: str) -> str | None:
         if self.ending:
-            return "this server is about to end; try again in a moment"
+            return ABOUT_TO_END
         if not is_loopback(machine) and self._of_machines[machine] >= EACH:
             return f"your machine has {EACH} sessions here already"
         if self.sessions >= MOST or (self.sessions >= self._first and self._is_busy(self._meter.lately())):

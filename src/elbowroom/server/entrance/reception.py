@@ -78,17 +78,16 @@ class Reception:
             self._senders -= Counter((sender.address,))
 
     @contextmanager
-    def files(self) -> Iterator[tuple[Path, Path]]:
-        """Where to put what comes and the avatar made of it; what nobody has taken over is gone in the end."""
-        folder = self._library.avatars.folder
-        stem = secrets.token_hex(8)
-        file, glb = folder / f"{stem}.sent", folder / f"{stem}.glb"
+    def files(self, *endings: str) -> Iterator[list[Path]]:
+        """Where to put what comes and what is made of it; what nobody has taken over is gone in the end."""
+        folder, stem = self._library.avatars.folder, secrets.token_hex(8)
+        files = [folder / f"{stem}.{ending}" for ending in endings]
         held = set[Path]()
         try:
-            yield file, glb
+            yield files
             held = self._library.files()
         finally:
-            for path in {file, glb} - held:
+            for path in set(files) - held:
                 path.unlink(missing_ok=True)
 
     async def receive(self, request: Request, file: Path, most: int | None = None) -> None:

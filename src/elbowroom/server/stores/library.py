@@ -1,6 +1,5 @@
 """What the sessions of one server share: the scenes, the avatars, and the choices that a session begins with."""
 
-import secrets
 from collections.abc import Callable, Hashable
 from concurrent.futures import Executor, ThreadPoolExecutor
 from dataclasses import dataclass, field, replace
@@ -22,19 +21,16 @@ from elbowroom.server.schema.menus import Catalog, SceneChoice, StyleChoice
 from elbowroom.server.sessions.meter import Meter
 from elbowroom.server.sessions.walk import WalkSettings
 from elbowroom.server.stores.avatar_store import STOCK, AvatarStore
-from elbowroom.server.stores.built_scenes import BuiltScenes
 from elbowroom.server.stores.clip_store import ClipStore
 from elbowroom.server.stores.courses import Courses
 from elbowroom.server.stores.place_files import PlaceFiles
+from elbowroom.server.stores.sent_scenes import SentScenes
 from elbowroom.server.stores.shelf import OwnShelf, Shelf
 from elbowroom.server.vmc.stream import VmcStream
 from elbowroom.world.scene import Scene
 
 if TYPE_CHECKING:
     from elbowroom.server.sessions.wanted import Wanted
-
-SENT = "place:"  # begins the names of scenes that pages have sent
-_MOST_PLACES = 8  # of these
 
 
 def planning_threads(begin: Callable[[], object] | None = None) -> Executor:
@@ -61,9 +57,8 @@ class Library:
     shelf: Shelf = field(default_factory=OwnShelf)  # what must outlast a session
     shared: bool = False  # whether other servers have the same shelf
     vmc: VmcStream | None = None  # where what is shown is sent too
-    sent_places: dict[str, Scene] = field(default_factory=dict)  # by name, the oldest first
-    built: BuiltScenes = field(default_factory=BuiltScenes)  # on pages
     places: PlaceFiles = field(default_factory=lambda: PlaceFiles(Path()))
+    sent: SentScenes = field(default_factory=lambda: SentScenes(PlaceFiles(Path())))  # by pages
     _styled: dict[str, MotionSet] = field(default_factory=dict)  # the same in a style, by its name
     warm: Event = field(default_factory=Event)  # set when every kernel has been loaded: until then plans wait for some
 
@@ -95,6 +90,7 @@ class Library:
             walk or WalkSettings(),
             motions=motions or MotionSet(),
             places=places,
+            sent=SentScenes(places),
         )
 
     def close(self) -> None:
@@ -105,7 +101,7 @@ class Library:
     async def find_scene(self, name: str, client: Hashable) -> Scene:
         """A scene of this server, or a random course for a client. Raises as `check_scene` and `Courses.find`."""
         self.check_scene(name)
-        known = self.scenes.get(name) or self.sent_places.get(name) or self.built.get(name)
+        known = self.scenes.get(name) or self.sent.get(name)
         return known if known is not None else await self.courses.find(name, client)
 
     def motions_in(self, style: str) -> MotionSet:
@@ -118,32 +114,16 @@ class Library:
         """This is what a session shows from now on, or will in a moment: it stays here. Nothing: it has ended."""
         self.avatars.hold(user, *(wanted.avatar for wanted in shown))
         self.clips.hold(user, *(wanted.clip for wanted in shown))
+        self.sent.hold(user, *(wanted.scene for wanted in shown))
 
     def files(self) -> set[Path]:
         """The files of what clients sent and this server keeps."""
         return self.avatars.files() | self.clips.files() | self.places.files()
 
-    def add_place(self, scene: Scene, glb: Path) -> Scene:
-        """The scene of a place that a page has sent, under a name that only this page learns; `glb` is kept with it.
-
-        The place that was sent longest ago goes when there are too many; who walks there goes on.
-        """
-        return self.keep_place(replace(scene, name=f"{SENT}{secrets.token_hex(8)}"), glb)
-
-    def keep_place(self, scene: Scene, glb: Path) -> Scene:
-        """The same under the name that it has."""
-        own = self.places.adopt(scene, glb)
-        self.sent_places[own.name] = own
-        while len(self.sent_places) > _MOST_PLACES:
-            self.places.forget(self.sent_places.pop(next(iter(self.sent_places))))
-        return own
-
     def check_scene(self, name: str) -> None:
         """Raises `InputError` if there is no scene and no course of this name."""
-        if name in self.scenes or name in self.sent_places or self.built.get(name) is not None:
+        if name in self.scenes or self.sent.get(name) is not None:
             return
-        if name.startswith(SENT):
-            raise InputError("that place is not here any more; drop its file on the page again")
         if not name.startswith(PREFIX):
             known = ", ".join(self.scenes)
             raise InputError(f"scene {name[:40]!r} is not known here; there are {known}, and courses: {NAMED}")

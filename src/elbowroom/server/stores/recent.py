@@ -17,7 +17,7 @@ class Room:
 
     most: int  # things in all
     each: int  # things of one sender; "", this machine, may fill it all
-    size: int  # bytes of all of them
+    size: int  # bytes of all of them, in memory or on disk
 
 
 @dataclass(frozen=True)
@@ -38,7 +38,7 @@ class RecentlySent(Generic[Item]):
         self._held: dict[Hashable, frozenset[str]] = {}
 
     def add(self, item_id: str, item: Item, size: int, sender: str = "") -> None:
-        """Take a thing in, in place of others; raises `InputError` where those are all in use."""
+        """Take a thing in, in place of others; raises `InputError` where those are all in use, or it is too large."""
         new = _Sent(item, size, sender)
         with self._lock:
             leaving = self._leaving(new)
@@ -70,6 +70,10 @@ class RecentlySent(Generic[Item]):
     def _leaving(self, new: _Sent[Item]) -> list[str]:
         """Who has to go for a new thing: the sender's own first."""
         room, held = self._room(), frozenset[str]().union(*self._held.values())
+        if new.size > room.size:
+            raise InputError(
+                f"what was sent takes {new.size >> 20} MiB here; there are {room.size >> 20} for all files"
+            )
         staying = dict(self._sent)
         leaving: list[str] = []
         while True:

@@ -1,9 +1,5 @@
 """A walk that a page has kept, as a file for other programs: what was shown there is what is written."""
 
-from dataclasses import replace
-from pathlib import Path
-from typing import NamedTuple
-
 import numpy as np
 
 from elbowroom.body.humanoid import Humanoid
@@ -12,7 +8,6 @@ from elbowroom.export.animation import Animation, Poses, check_length
 from elbowroom.export.formats import FORMATS, Wishes
 from elbowroom.export.writers import WRITERS, Exported
 from elbowroom.geometry import quaternion
-from elbowroom.server.stores.avatar_store import StoredAvatar
 
 # Each frame is so many float32 numbers, little-endian: time, epoch (another one after a jump), x, y, z and heading of
 # the root, the hips' translation (3), and the local rotations of the avatar's nodes (J, 4).
@@ -22,25 +17,19 @@ MAX_FRAMES = 36_000  # ten minutes, as many as a page keeps
 _LARGEST = 1e6  # of any number
 
 
-class SavedMotion(NamedTuple):
-    """A file to be handed to the page."""
-
-    name: str
-    exported: Exported
-
-
-def save_motion(frames: bytes, avatar: StoredAvatar, ending: str) -> SavedMotion:
-    """Write frames as a page sends them in the format with this ending; raises `InputError`."""
+def check_format(ending: str) -> None:
+    """Raises `InputError` if no format has this ending."""
     if ending not in FORMATS:
         raise InputError(f"format: {ending[:20]!r}, there are {', '.join(FORMATS)}")
-    humanoid = avatar.humanoid
-    if humanoid.glb is None and avatar.glb is not None:
-        humanoid = replace(humanoid, glb=avatar.glb.read_bytes())
+
+
+def save_motion(frames: bytes, humanoid: Humanoid, ending: str) -> Exported:
+    """Write frames as a page sends them in the format with this ending; raises `InputError`."""
+    check_format(ending)
     poses = _poses(frames, humanoid)
     check_length("motion", float(poses.times[-1] - poses.times[0]), humanoid, RATE)
     animation = Animation.of_poses("walk", humanoid.skeleton, poses, RATE)
-    written = WRITERS[ending](animation, humanoid, FORMATS[ending].layout(Wishes()))
-    return SavedMotion(f"{Path(avatar.title).stem or 'avatar'}-walk.{ending}", written)
+    return WRITERS[ending](animation, humanoid, FORMATS[ending].layout(Wishes()))
 
 
 def _poses(frames: bytes, humanoid: Humanoid) -> Poses:

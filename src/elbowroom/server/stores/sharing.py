@@ -9,9 +9,9 @@ from typing import Any
 
 from elbowroom.errors import InputError
 from elbowroom.server.stores.avatar_store import STOCK, StoredAvatar
-from elbowroom.server.stores.built_scenes import PREFIX as BUILT
 from elbowroom.server.stores.clip_store import SentMotions, StoredClip
-from elbowroom.server.stores.library import SENT, Library
+from elbowroom.server.stores.library import Library
+from elbowroom.server.stores.sent_scenes import BUILT, PLACE
 from elbowroom.world.scene import Scene
 
 # Names on the shelf are what pages know things by: nobody guesses them, and only servers ask. What lies there, servers
@@ -76,7 +76,7 @@ def bring_clip(library: Library, clip_id: str) -> None:
 
 def bring_scene(library: Library, name: str) -> None:
     """The same for a scene that was built on a page, or a place that was sent."""
-    if not name.startswith((BUILT, SENT)):
+    if not name.startswith((BUILT, PLACE)):
         return
     with suppress(InputError):
         library.check_scene(name)
@@ -86,9 +86,9 @@ def bring_scene(library: Library, name: str) -> None:
         scene, glb = found
         if glb is not None:
             path = _written(library, scene.place.glb.stem, glb)
-            library.keep_place(replace(scene, place=replace(scene.place, glb=path)), path)
-        else:
-            library.built.keep(scene)
+            scene = replace(scene, place=replace(scene.place, glb=path))
+        with suppress(InputError):
+            library.sent.keep(scene)
 
 
 def bring_file(library: Library, stem: str) -> None:

@@ -2,7 +2,7 @@
 
 import asyncio
 import contextlib
-from urllib.parse import quote
+from pathlib import Path
 
 from starlette.requests import Request
 from starlette.responses import JSONResponse, Response
@@ -10,17 +10,14 @@ from starlette.responses import JSONResponse, Response
 from elbowroom.errors import InputError
 from elbowroom.server.apart.jobs import PLACE
 from elbowroom.server.apart.process import run_apart
-from elbowroom.server.entrance.in_pieces import InPieces
 from elbowroom.server.entrance.page_key import Sender
 from elbowroom.server.entrance.reception import Reception
 from elbowroom.server.entrance.while_there import while_there
 from elbowroom.server.schema.menus import AvatarChoice, ClipChoice, SceneChoice, Uploaded
-from elbowroom.server.standalone.page import page_of_sent
 from elbowroom.server.stores.clip_store import SentMotions
 from elbowroom.server.stores.library import Library
 from elbowroom.server.stores.runs import run_response, shown_run
-from elbowroom.server.stores.saved_motion import save_motion
-from elbowroom.server.stores.sharing import share_avatar, share_clips, share_scene, shared_avatar
+from elbowroom.server.stores.sharing import share_avatar, share_clips, share_scene
 from elbowroom.server.wire.codec import plain
 from elbowroom.world.scene import Scene
 
@@ -48,63 +45,24 @@ class UploadDesk:
 
         async def shown(sender: Sender) -> Response:  # noqa: ARG001
             name = request.query_params.get("name", "run.elbow")[:_NAME]
-            with self._reception.files() as (file, _):
+            with self._reception.files("sent") as (file,):
                 await self._reception.receive(request, file)
                 async with self._reading:
                     return run_response(await while_there(request, shown_run(self._library, file, name)))
 
         return await self._reception.admitted(request, shown)
 
-    async def save(self, request: Request) -> Response:
-        """POST: the frames of a walk (`saved_motion`), `?avatar=` its id, `?format=` the ending of the file wanted.
-
-        Answers with the file; the header `x-elbowroom-note` says what is to be known about it.
-        """
-
-        async def saved(sender: Sender) -> Response:  # noqa: ARG001
-            avatar = await asyncio.to_thread(shared_avatar, self._library, request.query_params.get("avatar", ""))
-            with self._reception.files() as (file, _):
-                await self._reception.receive(request, file)
-                async with self._reading:
-                    ending = request.query_params.get("format", "")
-                    name, written = await asyncio.to_thread(save_motion, file.read_bytes(), avatar, ending)
-            headers = {"content-disposition": f"attachment; filename*=UTF-8''{quote(name)}"}
-            if written.notes:
-                headers["x-elbowroom-note"] = quote("; ".join(written.notes))
-            return InPieces(written.data, media_type="application/octet-stream", headers=headers)
-
-        return await self._reception.admitted(request, saved)
-
-    async def page(self, request: Request) -> Response:
-        """POST: a run as `schema.runs` has it, `?avatar=` the id of its avatar. Answers with a page that plays it."""
-
-        async def written(sender: Sender) -> Response:  # noqa: ARG001
-            avatar = await asyncio.to_thread(shared_avatar, self._library, request.query_params.get("avatar", ""))
-            with self._reception.files() as (file, _):
-                await self._reception.receive(request, file)
-                async with self._reading:
-                    page, notes = await asyncio.to_thread(page_of_sent, file.read_bytes(), avatar)
-            headers = {"content-disposition": "attachment; filename=walk.html"}
-            if notes:
-                headers["x-elbowroom-note"] = quote("; ".join(notes))
-            return InPieces(page, media_type="application/octet-stream", headers=headers)
-
-        return await self._reception.admitted(request, written)
-
     async def _taken(self, request: Request, sender: Sender) -> Uploaded:
         name = request.query_params.get("name", "avatar")[:_NAME]
-        with self._reception.files() as (file, glb):
+        with self._reception.files("sent", "glb") as (file, glb):
             await self._reception.receive(request, file)
             async with self._reading:
                 read = run_apart("read_upload", name, str(file), name, str(glb))
                 humanoid, clips, kind = await while_there(request, read)
                 if kind == PLACE:
                     read = run_apart("read_place", name, str(file), name, str(glb))
-                    document = await while_there(request, read)
-            if kind == PLACE:
-                scene = self._library.add_place(await asyncio.to_thread(Scene.from_dict, document, name), glb)
-                await asyncio.to_thread(share_scene, self._library, scene)
-                return Uploaded(None, [], SceneChoice(scene.name, scene.title))
+                    scene = await asyncio.to_thread(self._place_of, await while_there(request, read), name, glb, sender)
+                    return Uploaded(None, [], SceneChoice(scene.name, scene.title))
             avatar, own = None, []
             if humanoid is not None:
                 avatar = self._library.avatars.add_upload(humanoid, glb if glb.exists() else None, sender)
@@ -116,3 +74,9 @@ class UploadDesk:
                     await asyncio.to_thread(share_clips, self._library, sent, own)
         choice = None if avatar is None else AvatarChoice(avatar.id, avatar.title)
         return Uploaded(choice, [ClipChoice(clip.id, clip.title) for clip in own])
+
+    def _place_of(self, document: object, name: str, glb: Path, sender: Sender) -> Scene:
+        """Keep the place that a file told of."""
+        scene = self._library.sent.add_place(Scene.from_dict(document, name), glb, sender)
+        share_scene(self._library, scene)
+        return scene
