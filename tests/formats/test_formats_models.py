@@ -60,6 +60,24 @@ def test_loose_triangles_are_where_another_library_wrote_them(tmp_path: Path, ki
     assert middles == pytest.approx(np.sort(ball.triangles.mean(axis=1), axis=0), abs=1e-5)
 
 
+@pytest.mark.parametrize("corner", ["{v}", "{v}//{n}", "{v}/{t}/{n}"])
+def test_an_obj_may_count_its_corners_back(corner: str) -> None:
+    rng = np.random.default_rng(5)
+    front: list[str] = []
+    back: list[str] = []
+    for part in range(1, 9):
+        lines = [f"v {x} {y} {z}" for x, y, z in rng.uniform(-3.0, 3.0, (4, 3))]
+        lines += [f"vt {x} {y}" for x, y in rng.uniform(0.0, 1.0, (2, 2))] + ["vn 0 1 0"]
+        corners = [(4 * part - 3 + i, 2 * part - i % 2, part) for i in range(4)]
+        told = [" ".join(corner.format(v=v, t=t, n=n) for v, t, n in corners)]
+        told += [" ".join(corner.format(v=i - 4, t=-1 - i % 2, n=-1) for i in range(4))]
+        for file, face in zip((front, back), told, strict=True):
+            file += [*lines, f"f {face}"]
+    expected, found = (triangles(parse_model("\r\n".join(file).encode(), "a.obj")) for file in (front, back))
+    assert len(found) == 16
+    np.testing.assert_array_equal(found, expected)
+
+
 def _bytes(data: bytes | str) -> bytes:
     return data.encode() if isinstance(data, str) else data
 
@@ -99,6 +117,7 @@ def test_content_goes_before_the_name(tmp_path: Path) -> None:
     ("name", "data"),
     [
         ("a.obj", b"v 0 0\nf 1 2 9\n"),
+        ("a.obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf -1 -2 -9\n"),
         ("a.obj", b"nothing"),
         ("a.obj", b"v 0 0 0\nv 1 0 nan\nv 0 1 0\nf 1 2 3\n"),
         ("a.stl", b"solid a\nfacet normal 0 0 1\nvertex"),
