@@ -78,6 +78,12 @@ def test_an_obj_may_count_its_corners_back(corner: str) -> None:
     np.testing.assert_array_equal(found, expected)
 
 
+@pytest.mark.parametrize(("before", "after"), [("\n", "\r"), ("\n", "\r\n"), (" ", "\t"), (" ", "  ")])
+def test_words_and_lines_of_an_obj_are_apart_by_whatever_is_usual(before: str, after: str) -> None:
+    found = triangles(parse_model(TWO_TRIANGLES.replace(before, after).encode(), "a.obj"))
+    np.testing.assert_array_equal(found, triangles(parse_model(TWO_TRIANGLES.encode(), "a.obj")))
+
+
 def _bytes(data: bytes | str) -> bytes:
     return data.encode() if isinstance(data, str) else data
 
@@ -118,6 +124,7 @@ def test_content_goes_before_the_name(tmp_path: Path) -> None:
     [
         ("a.obj", b"v 0 0\nf 1 2 9\n"),
         ("a.obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf -1 -2 -9\n"),
+        ("a.obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 0 1 2\n"),
         ("a.obj", b"nothing"),
         ("a.obj", b"v 0 0 0\nv 1 0 nan\nv 0 1 0\nf 1 2 3\n"),
         ("a.stl", b"solid a\nfacet normal 0 0 1\nvertex"),

@@ -13,7 +13,7 @@ import numpy as np
 from elbowroom.errors import InputError
 from elbowroom.formats.gltf import Gltf, parse_gltf
 from elbowroom.formats.models.kinds import ModelKind
-from elbowroom.formats.models.obj_indices import counted_from_the_front
+from elbowroom.formats.models.obj_text import plain_obj
 
 _MOST_BESIDE = 64 * 2**20  # bytes of materials and pictures beside a model, in all
 
@@ -25,7 +25,7 @@ def parse_loose_triangles(data: bytes, kind: ModelKind, name: str, folder: Path 
     beside = _Beside(folder)
     options: dict[str, Any] = {}
     if kind is ModelKind.OBJ:
-        data, options = counted_from_the_front(data), {"split_objects": True, "split_groups": True}
+        data, options = plain_obj(data), {"split_objects": True, "split_groups": True}
     load: Any = trimesh.load_scene  # which takes whatever can be asked for files as `beside` can
     try:
         with _silent():
