@@ -8,11 +8,13 @@ import pytest
 import trimesh
 
 from elbowroom.errors import InputError
+from elbowroom.formats.gltf import parse_gltf
 from elbowroom.formats.models import model as models
 from elbowroom.formats.models.kinds import ModelKind, kind_of
 from elbowroom.formats.models.model import Model, parse_model, read_model
-from elbowroom.formats.models.recognised import is_of_a_place
+from elbowroom.formats.models.recognised import is_of_a_place, may_be_a_place
 from elbowroom.formats.nodes import read_nodes
+from elbowroom.formats.packing import write_glb
 from elbowroom.formats.triangles import triangle_mesh
 from hanim_builder import HanimRecipe, build_hanim
 from place_builder import TWO_ROOMS, glb
@@ -176,3 +178,15 @@ def test_models_without_a_skeleton_are_places(tmp_path: Path) -> None:
     assert is_of_a_place(tmp_path / "room.wrl")
     assert not is_of_a_place(tmp_path / "who.x3d")
     assert not is_of_a_place(tmp_path / "missing.glb")
+
+
+def test_a_place_may_have_a_flag_that_bends() -> None:
+    gltf = parse_gltf(glb(TWO_ROOMS), "rooms.glb")
+    content = dict(gltf.root.value)
+    binary = bytes(gltf.buffers[0] or b"")
+    content["skins"] = [{"joints": [1]}]
+    content["nodes"][0]["skin"] = 0
+    assert may_be_a_place(write_glb(content, binary), "rooms.glb")
+    for node in content["nodes"]:
+        node["skin"] = 0
+    assert not may_be_a_place(write_glb(content, binary), "rooms.glb")

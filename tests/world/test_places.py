@@ -10,6 +10,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from elbowroom.errors import InputError
+from elbowroom.formats.fields import Field
+from elbowroom.formats.gltf import parse_gltf
+from elbowroom.formats.packing import write_glb
 from elbowroom.world.places import columns as cutting
 from elbowroom.world.places.columns import columns_of
 from elbowroom.world.places.inspection import facts_of
@@ -17,6 +20,7 @@ from elbowroom.world.places.options import PlaceOptions
 from elbowroom.world.places.passages import passages_of
 from elbowroom.world.places.place import Place
 from elbowroom.world.places.reading import BOUNDS, parse_place, read_place
+from elbowroom.world.places.shown import shown_glb
 from elbowroom.world.places.survey import survey
 from place_builder import TWO_ROOMS, Boxes, glb, write_place
 from shared_data import SHARED, needs_shared
@@ -49,6 +53,24 @@ def test_a_pattern_that_matches_nothing_is_a_note() -> None:
         "drop 'Window_*' matches no name in the file",
         "passable 'door_1' matches no name in the file",
     )
+
+
+def test_what_nobody_sees_does_not_stand_and_what_is_not_read_is_told() -> None:
+    gltf = parse_gltf(glb(TWO_ROOMS), "rooms.glb")
+    content = dict(gltf.root.value)
+    content["scenes"] = [{"nodes": [node for node in range(len(TWO_ROOMS)) if node != list(TWO_ROOMS).index("Table")]}]
+    content["extensionsRequired"] = ["KHR_mesh_quantization", "KHR_texture_basisu", "VENDOR_walls"]
+    found = parse_place(write_glb(content, bytes(gltf.buffers[0] or b"")), "rooms.glb")
+    assert {part.name for part in found.parts} == set(TWO_ROOMS) - {"Table"}
+    assert found.notes == (
+        "nodes left out, since they are hidden or in another scene of the file: 1 with a mesh",
+        "it needs 'VENDOR_walls', which is not read here: something may be missing",
+    )
+    assert "Table" not in {node.at("name").text() for node in shown_nodes(found) if node.at("mesh").present}
+
+
+def shown_nodes(found: Place) -> list[Field]:
+    return parse_gltf(shown_glb(found, 0.0), "shown.glb").root.at("nodes").items()
 
 
 def test_what_hangs_on_a_dropped_node_is_dropped_with_it() -> None:

@@ -91,7 +91,7 @@ def inspect(
 
 def _read(paths: list[Path], kind: str | None, settings: "LoadSettings", told: "PlaceOptions", bar: Bar) -> _Found:
     """Read all the files as avatars or places: as told, or else by what they hold."""
-    from elbowroom.formats.models.recognised import is_of_a_place
+    from elbowroom.formats.models.recognised import is_of_a_place, may_be_a_place
 
     found = _Found()
     for path in paths:
@@ -100,10 +100,15 @@ def _read(paths: list[Path], kind: str | None, settings: "LoadSettings", told: "
             check_file(path)
             if kind == "place" or (kind is None and is_of_a_place(path)):
                 found.places.append(look_over(path, told, bar))
-            else:
-                from elbowroom.body.loading.inspection import inspect_avatar
+                continue
+            from elbowroom.body.loading.inspection import inspect_avatar
 
+            try:
                 found.avatars.append(inspect_avatar(path, settings))
+            except InputError:
+                if kind is not None or not may_be_a_place(path.read_bytes(), path.name):
+                    raise
+                found.places.append(look_over(path, told, bar))
         except InputError as error:
             found.refused[str(path)] = str(error)
     return found

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from elbowroom.errors import InputError
 from elbowroom.formats.fields import Field
 from elbowroom.formats.gltf import Gltf
+from elbowroom.formats.instances import instances_of
 from elbowroom.formats.nodes import NodeTree
 from elbowroom.formats.primitives import Primitive, morphs_of
 from elbowroom.formats.skins import Skin, read_skin
@@ -52,11 +53,12 @@ def triangle_parts(gltf: Gltf, tree: NodeTree, bounds: MeshBounds = _BOUNDS) -> 
     skins: dict[int, Skin] = {}
     vertices = triangles = 0
     for node, primitive in _surfaces(gltf, tree, bounds.primitives):
-        part = _part(gltf, tree, node, primitive, skins)
-        vertices, triangles = vertices + len(part.nodes), triangles + len(part.triangles)
+        part, instances = _part(gltf, tree, node, primitive, skins), instances_of(gltf, node)
+        times = 1 if instances is None else len(instances)
+        vertices, triangles = vertices + times * len(part.nodes), triangles + times * len(part.triangles)
         if vertices > bounds.vertices or triangles > bounds.triangles:
             raise InputError(f"{gltf.name}: more than {bounds.vertices} vertices or {bounds.triangles} triangles")
-        yield node, part
+        yield node, part if instances is None else _repeated(part, instances)
 
 
 def _surfaces(gltf: Gltf, tree: NodeTree, most: int) -> Iterator[tuple[int, Field]]:
@@ -89,6 +91,21 @@ def _part(gltf: Gltf, tree: NodeTree, node: int, field: Field, skins: dict[int, 
     with np.errstate(all="ignore"):
         offsets = np.einsum("vkij,vj->vki", bind[..., :3, :3], points) + bind[..., :3, 3]
     return TriangleMesh(triangles, skin.joints[slots], weights, offsets, np.ones(len(points), bool))
+
+
+def _repeated(part: TriangleMesh, instances: Floats) -> TriangleMesh:
+    """The same N times over, each moved by one of the transforms (N, 4, 4) in the axes of its nodes."""
+    many, count = len(instances), len(part.nodes)
+    with np.errstate(all="ignore"):
+        offsets = np.einsum("nij,vkj->nvki", instances[:, :3, :3], part.offsets) + instances[:, None, None, :3, 3]
+    firsts = count * np.arange(many)[:, None, None]
+    return TriangleMesh(
+        triangles=(part.triangles + firsts).reshape(-1, 3),
+        nodes=np.tile(part.nodes, (many, 1)),
+        weights=np.tile(part.weights, (many, 1)),
+        offsets=offsets.reshape(many * count, *part.offsets.shape[1:]),
+        skinned=np.tile(part.skinned, many),
+    )
 
 
 def _joined(parts: list[TriangleMesh]) -> TriangleMesh:

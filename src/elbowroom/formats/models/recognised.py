@@ -3,6 +3,7 @@
 from pathlib import Path
 
 from elbowroom.errors import InputError
+from elbowroom.formats.fields import Field
 from elbowroom.formats.gltf import parse_gltf, read_gltf
 from elbowroom.formats.models.kinds import ModelKind, kind_by_name, kind_of
 from elbowroom.formats.x3d.files import read_bytes, unpacked
@@ -12,12 +13,21 @@ _HUMANOIDS = (b"Humanoid", b"HAnimJoint")
 
 
 def may_be_a_place(data: bytes, name: str) -> bool:
-    """Whether these bytes are a model with surfaces and no skin: a place, should it be nobody. Raises `InputError`."""
+    """Whether these bytes are a model most of which bends by no bones: a place, should it be nobody.
+
+    Raises `InputError`.
+    """
     kind = kind_of(data, name)
     if kind is not ModelKind.GLTF:
         return kind is not None
-    root = parse_gltf(data, name).root
-    return bool(root.at("meshes").items()) and not root.at("skins").items()
+    return _mostly_stands(parse_gltf(data, name).root)
+
+
+def _mostly_stands(root: Field) -> bool:
+    """Whether more nodes show a mesh as it is than one that is moved by bones, such as a flag or a fish."""
+    shown = [node for node in root.at("nodes").items() if node.at("mesh").present]
+    bent = sum(node.at("skin").present for node in shown)
+    return len(shown) > 2 * bent
 
 
 def is_of_a_place(path: Path) -> bool:

@@ -9,6 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.errors import InputError
+from elbowroom.formats.gltf import Gltf
+from elbowroom.formats.hidden_nodes import hidden_nodes
 from elbowroom.formats.models.model import Model, parse_model, read_model
 from elbowroom.formats.nodes import NodeTree, read_nodes
 from elbowroom.formats.triangles import MeshBounds, TriangleMesh, triangle_parts
@@ -22,6 +24,12 @@ Progress = Callable[[str, float], None]  # what is done, and which share of it
 BOUNDS = MeshBounds(vertices=6_000_000, triangles=2_000_000, primitives=20_000)
 _LONGEST_NAME = 100  # characters
 _FARTHEST = 10_000.0  # metres
+_MOST_EXTENSIONS = 100
+_READ = (
+    "KHR_draco_mesh_compression", "EXT_meshopt_compression", "KHR_meshopt_compression", "KHR_mesh_quantization",
+    "KHR_node_visibility", "EXT_mesh_gpu_instancing",
+)  # fmt: skip
+_LOOKS = ("KHR_materials_", "KHR_texture_", "EXT_texture_", "KHR_lights_", "EXT_lights_")  # these change no shape
 _EMPTY = "there are no triangles in it"
 _OPTIONS = PlaceOptions()
 
@@ -46,6 +54,8 @@ def _place(model: Model, name: str, options: PlaceOptions, progress: Progress) -
     tree = read_nodes(model.gltf)
     names = _names(tree)
     dropped, passable, notes = _chosen(tree, options)
+    hidden = hidden_nodes(model.gltf, tree)
+    dropped, notes = dropped | hidden, (*notes, *_told(model.gltf, tree, hidden))
     shown = list(_shown(model, tree, dropped, name, progress))
     if not shown:
         raise InputError(f"{name}: {_EMPTY}" + (", or all are dropped" if dropped else ""))
@@ -139,6 +149,16 @@ def _chosen(tree: NodeTree, options: PlaceOptions) -> tuple[frozenset[int], froz
                 own.add(node)
         chosen.append(frozenset(own))
     return chosen[0], chosen[1], tuple(notes)
+
+
+def _told(gltf: Gltf, tree: NodeTree, hidden: frozenset[int]) -> Iterator[str]:
+    """Notes on what nobody sees, and on what is not read."""
+    unseen = sum(tree.meshes[node] >= 0 for node in hidden)
+    if unseen:
+        yield f"nodes left out, since they are hidden or in another scene of the file: {unseen} with a mesh"
+    for name in gltf.root.at("extensionsRequired").items(_MOST_EXTENSIONS):
+        if name.text() not in _READ and not name.text().startswith(_LOOKS):
+            yield f"it needs {name.text()[:_LONGEST_NAME]!r}, which is not read here: something may be missing"
 
 
 def _refuse_too_large(place: Place) -> None:
