@@ -189,7 +189,7 @@ def test_what_is_no_motion_is_said_plainly() -> None:
     for data, words in (
         (b"", "is empty"),
         (b"\x00\x01\x02\x03", "begins with the bytes 00 01 02 03"),
-        (b"<html>", "begins with '<html>'"),
+        (b"<html>", "is an XML file: it is neither BVH"),
     ):
         with pytest.raises(InputError, match=words):
             parse_motion(data, "a.bvh")

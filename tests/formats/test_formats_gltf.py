@@ -27,7 +27,10 @@ def _binary(glb: bytes) -> bytes:
     ("data", "words"),
     [
         (b"", "is empty"),
-        (b"PK\x03\x04 zip", "neither a GLB"),
+        (b"PK\x03\x04 zip", "is a ZIP archive: it is neither a GLB .*; unpack it"),
+        (b"Kaydara FBX Binary  \x00", "is an FBX model: .*; Blender can open it and save it as .glb"),
+        (b"Pmx \x00\x00\x00@", "is an MMD model: .*add-on"),
+        (b"<?xml version='1.0'?><COLLADA version='1.4.1'>", "is a COLLADA model: "),
         (GLB[:8], "at least 20"),
         (GLB[:-1], "cut off"),
         (GLB[:4] + struct.pack("<I", 1) + GLB[8:], "version 1"),

@@ -14,7 +14,8 @@ from elbowroom.clips.told import Told
 from elbowroom.errors import InputError
 from elbowroom.formats.animations import read_animations, take_of
 from elbowroom.formats.bvh import MAX_BYTES, is_bvh, parse_bvh
-from elbowroom.formats.fields import Field, beginning_of
+from elbowroom.formats.fields import Field
+from elbowroom.formats.foreign_files import told_apart
 from elbowroom.formats.gltf import Gltf, parse_gltf
 from elbowroom.formats.hanim.figure import HanimFigure, parse_figure
 from elbowroom.formats.hanim.motion import hanim_animations, hanim_take
@@ -81,7 +82,7 @@ def parse_motion(
     if is_usd(data):
         return _from_usd(parse_usda(data, name), told, bones)
     if not is_bvh(data):
-        raise InputError(f"{name}{beginning_of(data)}: it is neither BVH (HIERARCHY) nor glTF, GLB, VRMA, X3D or USD")
+        raise InputError(told_apart(name, data, "it is neither BVH (HIERARCHY) nor glTF, GLB, VRMA, X3D or USD"))
     return _from_bvh(data, name, told, bones)
 
 

@@ -5,7 +5,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from elbowroom.errors import InputError
-from elbowroom.formats.fields import Field, beginning_of, parse_json
+from elbowroom.formats.fields import Field, parse_json
+from elbowroom.formats.foreign_files import told_apart
 from elbowroom.formats.resources import read_uri
 
 MAX_BYTES = 256 * 1024 * 1024
@@ -45,7 +46,7 @@ def parse_gltf(data: bytes, name: str, folder: Path | None = None) -> Gltf:
         raise InputError(f"{name} has {len(data) >> 20} MB: at most {MAX_BYTES >> 20} MB are read")
     is_glb = data[:4] == b"glTF"
     if not is_glb and not data[:64].lstrip(b"\xef\xbb\xbf \t\r\n").startswith(b"{"):
-        raise InputError(f"{name}{beginning_of(data)}: it is neither a GLB or VRM ('glTF') nor a .gltf ('{{')")
+        raise InputError(told_apart(name, data, "it is neither a GLB or VRM ('glTF') nor a .gltf ('{')"))
     text, binary = _glb_chunks(data, name) if is_glb else (data, None)
     root = Field(parse_json(text, name), name)
     version = root.at("asset").at("version")

@@ -9,8 +9,8 @@ from typing import Any
 
 from elbowroom.body.root import RootState
 from elbowroom.errors import InputError
+from elbowroom.formats.foreign_files import foreign_document, foreign_kind
 from elbowroom.formats.models.kinds import kind_by_name
-from elbowroom.world.foreign_files import foreign_document, foreign_kind
 from elbowroom.world.ground.ground import Ground, eased_height
 from elbowroom.world.ground.making import ground_of
 from elbowroom.world.json_place import parse_json, read_json

@@ -3,8 +3,8 @@
 from enum import Enum
 from pathlib import PurePath
 
+from elbowroom.formats.x3d.recognised import COLLADA, is_x3d
 from elbowroom.formats.x3d.recognised import SUFFIXES as X3D_SUFFIXES
-from elbowroom.formats.x3d.recognised import is_x3d
 
 _STL_HEAD, _STL_FACET = 84, 50  # bytes of a binary STL before its triangles, and of each
 
@@ -51,7 +51,9 @@ def kind_of(data: bytes, name: str) -> ModelKind | None:
         return ModelKind.GLTF
     if head.startswith(b"ply\n") or head.startswith(b"ply\r"):
         return ModelKind.PLY
-    if head.startswith((b"#VRML", b"#X3D", b"<")) or (named is ModelKind.X3D and is_x3d(data)):
+    if (head.startswith((b"#VRML", b"#X3D", b"<")) and COLLADA not in data[:4096]) or (
+        named is ModelKind.X3D and is_x3d(data)
+    ):
         return ModelKind.X3D
     if (head.startswith(b"solid") and b"facet" in data[:4096]) or _is_binary_stl(data):
         return ModelKind.STL
