@@ -190,6 +190,20 @@ def test_a_page_elsewhere_may_ask_for_nothing(page: Page, path: str) -> None:
     assert page.get("/api/health", headers={"origin": LOCAL, "sec-fetch-site": "same-origin"}).status_code == 200
 
 
+def test_a_page_elsewhere_may_use_no_address_under_api(library: Library, page: Page) -> None:
+    """Whatever is added there: each is asked as such a page would, and none does anything."""
+    found = [one for one in make_app(library).routes if isinstance(one, Route) and one.path.startswith("/api/")]
+    assert {"/api/scenes/{name}", "/api/avatars", "/api/runs"} <= {route.path for route in found}
+    for route in found:
+        path = route.path.replace("{name}", "gauntlet:5:1")
+        ask = page.post if "POST" in (route.methods or ()) else page.get
+        for origin in ("http://evil.example", "http://127.0.0.1:8766", "null"):
+            answer = ask(path, headers={"origin": origin})
+            assert (answer.status_code, answer.text) == (403, "That page may not talk to this server.\n"), path
+        if ask == page.get:  # as for a picture, without an Origin
+            assert page.get(path, headers={"sec-fetch-site": "cross-site"}).status_code == 403, path
+
+
 def test_a_loopback_server_does_not_know_the_addresses_of_the_network(library: Library) -> None:
     assert made(library, base="http://192.168.1.5:8765").get("/api/health").status_code == 403
 
