@@ -5,12 +5,12 @@ import os
 import pickle
 import sys
 import time
-from contextlib import suppress
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from child_processes import children
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.stock import stock_avatar_path
 from elbowroom.clips.clip import Clip
@@ -28,15 +28,6 @@ def read(file: Path, name: str, glb: Path, bounds: Bounds | None = None) -> tupl
         run_apart("read_upload", name, str(file), name, str(glb), bounds=bounds or Bounds())
     )
     return made
-
-
-def children() -> set[int]:
-    """The processes that this one started: a thread that ends while one looks has none."""
-    found: set[int] = set()
-    for task in Path("/proc/self/task").iterdir():
-        with suppress(FileNotFoundError, ProcessLookupError):
-            found |= {int(pid) for pid in (task / "children").read_text().split()}
-    return found
 
 
 def test_an_avatar_read_apart_is_the_avatar(tmp_path: Path) -> None:
