@@ -24,7 +24,7 @@ PATIENCE = Patience(request=10.0, reading=15.0, closing=3.0, unread=1000, idle=4
 
 class Transport:
     def __init__(self) -> None:
-        self.waiting = 0
+        self.given = self.waiting = 0
         self.closing = self.aborted = False
 
     def get_write_buffer_size(self) -> int:
@@ -76,6 +76,18 @@ def test_who_reads_slowly_stays() -> None:
         slow.transport.waiting = 900 - 5 * now
         doorman.look([slow], float(now))
     assert not slow.transport.aborted
+
+
+def test_who_reads_steadily_stays_where_as_much_waits_at_each_look() -> None:
+    """What is taken between two looks is made up for by what is sent next."""
+    steady, doorman = Connection(busy=True), Doorman(PATIENCE)
+    steady.transport.waiting = 900
+    for now in range(0, 200, 10):
+        steady.transport.given += 500
+        doorman.look([steady], float(now))
+    assert not steady.transport.aborted
+    doorman.look([steady], 206.0)
+    assert steady.transport.aborted
 
 
 def test_what_waits_is_bounded() -> None:

@@ -15,7 +15,7 @@ from elbowroom.experiment.parallel import usable_cores
 from elbowroom.server.app import make_app
 from elbowroom.server.ending import end_at_latest
 from elbowroom.server.entrance.admission import AMONG, Admission
-from elbowroom.server.entrance.connections import BoundedWebSocket, looks_after
+from elbowroom.server.entrance.connections import BoundedWebSocket, CountedHttp, looks_after
 from elbowroom.server.ports import HIGHEST, check_port
 from elbowroom.server.schema.bounds import MAX_MESSAGE
 from elbowroom.server.stores.library import Library
@@ -105,7 +105,7 @@ def make_server(library: Library, opened: socket.socket, host: str = "", front: 
         app = make_app(library, front.bound_host, front.name, admission, front.word)
     config = uvicorn.Config(
         app,
-        http="h11",
+        http=CountedHttp,
         ws=BoundedWebSocket,
         ws_max_size=MAX_MESSAGE,
         ws_per_message_deflate=False,

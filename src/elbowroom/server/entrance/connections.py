@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from typing import Any
 from weakref import WeakKeyDictionary
 
+from uvicorn.protocols.http.h11_impl import H11Protocol
 from uvicorn.protocols.utils import ClientDisconnected
 from uvicorn.protocols.websockets.websockets_sansio_impl import WebSocketsSansIOProtocol
 
@@ -17,6 +18,30 @@ from elbowroom.server.entrance.rate_limit import TokenBucket
 _SLICE = 4096  # bytes of a WebSocket that are taken apart at once: 700 frames at most
 _SMALL_FRAMES = 50.0  # pings, pongs and parts of messages a second that a client may send
 _AFTER_CLOSE = 16 * 1024  # bytes that a client may still send when it is told that the connection closes
+
+
+class CountedTransport:
+    """A transport of asyncio that knows how many bytes it was given."""
+
+    def __init__(self, transport: Any) -> None:
+        self._transport = transport
+        self.given = 0
+
+    def write(self, data: bytes) -> None:
+        """Send, as soon as the client takes it."""
+        self.given += len(data)
+        self._transport.write(data)
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._transport, name)
+
+
+class CountedHttp(H11Protocol):
+    """HTTP over a `CountedTransport`, which a WebSocket that begins with it takes over."""
+
+    def connection_made(self, transport: Any) -> None:
+        """Count from now on."""
+        super().connection_made(CountedTransport(transport))  # type: ignore[arg-type]
 
 
 class BoundedWebSocket(WebSocketsSansIOProtocol):
@@ -83,7 +108,8 @@ class _Seen:
     """What was seen of a connection, in seconds of the clock."""
 
     waiting: int = 0  # bytes to be sent
-    moved: float = 0.0  # when nothing waited, or less than before
+    taken: int = 0  # bytes that were sent
+    moved: float = 0.0  # when nothing waited, or more was taken than before
     asked: float = 0.0  # when a request was being answered
     open: float = 0.0  # when it was not closing
 
@@ -122,9 +148,10 @@ class Doorman:
     def _noted(self, connection: Any, now: float) -> _Seen:
         seen = self._seen.setdefault(connection, _Seen(moved=now, asked=now, open=now))
         waiting = connection.transport.get_write_buffer_size()
-        if waiting == 0 or waiting < seen.waiting:
+        taken = connection.transport.given - waiting  # what waits may be as much as before, and be something else
+        if waiting == 0 or taken > seen.taken:
             seen.moved = now
-        seen.waiting = waiting
+        seen.waiting, seen.taken = waiting, taken
         if _is_busy(connection):
             seen.asked = now
         if not connection.transport.is_closing():
