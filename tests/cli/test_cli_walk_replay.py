@@ -1,6 +1,7 @@
 """`elbowroom walk` and `replay` as a user calls them."""
 
 import json
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -15,6 +16,9 @@ from elbowroom.cli.main import app
 from elbowroom.control.recordings import recording
 from elbowroom.control.recordings import replay as replays
 from elbowroom.experiment.crossing import CrossingResult
+from elbowroom.experiment.gauntlet.names import parse_name
+from elbowroom.formats.models.kinds import ModelKind, kind_by_name
+from elbowroom.world.scene import Scene
 from sampled import sampled
 
 RUNNER = CliRunner()
@@ -162,6 +166,19 @@ def test_a_wrong_call_is_one_line_and_2(arguments: list[str], word: str) -> None
     assert result.stdout == ""
     assert result.stderr.count("\n") == 1, result.stderr
     assert word in result.stderr
+
+
+def test_an_unknown_scene_is_told_all_that_may_be_named() -> None:
+    result = RUNNER.invoke(app, ["walk", "--scene", "nowhere"])
+    assert result.exit_code == 2
+    assert result.stderr.startswith("elbowroom: scene 'nowhere' is neither a stock scene (")
+    listed = re.findall(r"\(([^()]*)\)", result.stderr)
+    assert listed[0].split(", ") == list(Scene.stock_names())
+    assert listed[1] == ".json"
+    endings = listed[2].split(", ")
+    assert {kind_by_name(f"house{ending}") for ending in endings} == set(ModelKind)
+    assert listed[3].startswith("gauntlet:LEVEL:SEED, ")
+    assert parse_name(listed[3].rpartition(" ")[2]) == (5, 1013)
 
 
 def test_help_is_quick_to_import_and_names_the_commands() -> None:

@@ -6,6 +6,8 @@ from pathlib import Path
 
 from elbowroom.errors import InputError
 
+_FILES = "a scene's file (.json) nor a model of a place (.glb, .gltf, .obj, .stl, .ply, .x3d, .wrl)"
+
 
 class UnknownSceneError(InputError):
     """There is no scene of this name."""
@@ -31,4 +33,4 @@ def check_scene_name(name_or_path: str | Path) -> None:
     path = Path(name_or_path)
     if not path.suffix and not path.is_file():
         names = ", ".join(stock_names())
-        raise UnknownSceneError(f"scene {str(name_or_path)!r} is neither a stock scene ({names}) nor a .json file")
+        raise UnknownSceneError(f"scene {str(name_or_path)!r} is neither a stock scene ({names}) nor {_FILES}")
