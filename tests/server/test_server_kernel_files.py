@@ -26,6 +26,26 @@ def test_a_full_or_missing_place_gives_way_to_a_private_one(tmp_path: Path, monk
     assert "every start compiles them anew" in str(kernel_files.find_place())
 
 
+@pytest.mark.parametrize(
+    ("folders", "said"),
+    [
+        (["/one"], "cannot be kept in /one"),
+        (["/one", "/two"], "can be kept neither in /one nor in /two"),
+    ],
+)
+@pytest.mark.parametrize("private", [True, False])
+def test_what_is_told_is_a_sentence_of_one_folder_or_of_two(
+    folders: list[str], said: str, *, private: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("NUMBA_CACHE_DIR", "")
+    monkeypatch.setattr(kernel_files, "places", lambda: [Path(folder) for folder in folders])
+    monkeypatch.setattr(kernel_files, "_private_folder", lambda: tmp_path if private else None)
+    monkeypatch.setattr(kernel_files, "_has_room", lambda folder: folder == tmp_path)
+    place = f"they go to {tmp_path}; set NUMBA_CACHE_DIR for another place"
+    none = "every start compiles them anew; set NUMBA_CACHE_DIR"
+    assert kernel_files.find_place() == f"compiled kernels {said}: {place if private else none}"
+
+
 def test_a_full_disk_gives_way_too(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path))
     assert kernel_files.find_place() is None
@@ -45,6 +65,6 @@ def test_a_program_without_any_place_runs_and_says_so_in_one_line(tmp_path: Path
     )
     ran = subprocess.run([sys.executable, "-c", program], env=environment, capture_output=True, text=True, check=False)
     first, second = ran.stderr.strip().splitlines()
-    assert first.startswith("elbowroom: compiled kernels can be kept neither in /proc/nowhere: every start compiles")
+    assert first.startswith("elbowroom: compiled kernels cannot be kept in /proc/nowhere: every start compiles")
     assert "nowhere" in second
     assert ran.returncode == 2

@@ -3,6 +3,7 @@
 import os
 import shutil
 import tempfile
+from collections.abc import Sequence
 from pathlib import Path
 
 PACKAGE = Path(__file__).parents[2]
@@ -29,13 +30,19 @@ def find_place() -> str | None:
         if len(wanted) > 1 and not _has_room(wanted[0] / "__pycache__"):
             os.environ[_VARIABLE] = str(wanted[1])  # the package's own folder is full, if not read-only
         return None
-    said = " nor ".join(str(place) for place in wanted)
+    said = f"compiled kernels {_cannot_lie_in(wanted)}"
     private = _private_folder()
     if private is None or not _has_room(private):
         os.environ[_VARIABLE] = os.devnull
-        return f"compiled kernels can be kept neither in {said}: every start compiles them anew; set {_VARIABLE}"
+        return f"{said}: every start compiles them anew; set {_VARIABLE}"
     os.environ[_VARIABLE] = str(private)
-    return f"compiled kernels can be kept neither in {said}: they go to {private}; set {_VARIABLE} for another place"
+    return f"{said}: they go to {private}; set {_VARIABLE} for another place"
+
+
+def _cannot_lie_in(places: Sequence[Path]) -> str:
+    if len(places) == 1:
+        return f"cannot be kept in {places[0]}"
+    return "can be kept neither " + " nor ".join(f"in {place}" for place in places)
 
 
 def _has_room(folder: Path) -> bool:
