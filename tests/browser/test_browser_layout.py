@@ -4,7 +4,9 @@ from collections.abc import Callable
 
 import pytest
 
+from elbowroom.world.scene import Scene
 from live_page import LivePage
+from sampled import sampled
 
 Open = Callable[..., LivePage]
 
@@ -17,6 +19,15 @@ SMALLEST = """
   .map((control) => [control.id || control.className || control.textContent, control.getBoundingClientRect()])
   .filter(([, box]) => box.width > 0 && (box.width < 44 || box.height < 44))
   .map(([name, box]) => `${name}: ${box.width} x ${box.height}`)
+"""
+
+AT_THE_TOP = """
+(titles) => titles.map((title) => {
+  document.querySelector("#place").textContent = title;
+  const boxes = ["#brand", "#brand h1", "#place", "#bar", "#hud"]
+    .map((name) => [name, document.querySelector(name).getBoundingClientRect().toJSON()]);
+  return Object.fromEntries(boxes);
+})
 """
 
 
@@ -44,6 +55,27 @@ def test_no_panel_lies_on_another(open_page: Open) -> None:
             assert (box["x"] >= 0, box["x"] + box["width"] <= width) == (True, True), (one, width)
             assert box["y"] + box["height"] <= height
             assert [other for other in found if other != one and overlap(box, found[other])] == [], (one, width)
+
+
+@pytest.mark.parametrize(
+    ("lang", "touch"), sampled([("en", False), ("en", True), ("zh-Hant", False), ("zh-Hant", True)], 3)
+)
+def test_the_title_ends_before_the_bar_on_a_narrow_page(open_page: Open, lang: str, *, touch: bool) -> None:
+    """At 640 px all of the bar is beside it, and nothing is left out yet; what is too long is cut, not laid over."""
+    live = open_page(f"scene=empty&lang={lang}", viewport=(640, 480), has_touch=touch, is_mobile=touch)
+    titles = [Scene.load(name).title for name in Scene.stock_names()] + ["A scene that somebody gave a long name"]
+    for width in (640, 700) if touch else (640, 621, 700):
+        live.page.set_viewport_size({"width": width, "height": 480})
+        live.settle_panels()
+        for found in live.page.evaluate(AT_THE_TOP, titles):
+            brand, bar, hud = found["#brand"], found["#bar"], found["#hud"]
+            assert brand["width"] > 0, width
+            assert not overlap(brand, bar), (width, found)
+            assert not overlap(brand, hud), (width, found)
+            assert not overlap(bar, hud), (width, found)
+            assert bar["x"] + bar["width"] <= width
+            for part in ("#brand h1", "#place"):  # neither sticks out of its box
+                assert found[part]["x"] + found[part]["width"] <= brand["x"] + brand["width"], (width, found)
 
 
 def test_the_card_at_the_finish_lies_on_no_panel(open_page: Open) -> None:
