@@ -202,6 +202,20 @@ def test_crossing_the_finish_is_told(client: Client) -> None:
     assert client.wait_for(Status).crossed == 1
 
 
+def test_who_has_crossed_the_finish_walks_on_past_the_end_of_the_floor(client: Client) -> None:
+    scene = client.wait_for(SceneMessage)
+    end = scene.ground.center[1] + scene.ground.size[1] / 2
+    client.send(Configure(walk_speed=2.0))
+    client.send(ClockMessage(speed=2.0))
+    client.press(forward=1.0, run=True)
+    gate = client.frame(lambda f: f.flag("finished"))
+    beyond = [client.frame(lambda f, at=z: f.z > at) for z in (gate.z + 1.0, end, end + 3.0)]  # type: ignore[misc]
+    for frame in beyond:
+        assert (frame.flag("finished"), frame.flag("stuck"), frame.epoch) == (True, False, gate.epoch)
+        assert frame.forward > 1.0
+    assert client.wait_for(Status).crossed == 1
+
+
 def test_an_unknown_choice_is_refused_and_the_old_one_stays(client: Client) -> None:
     client.wait_for(AvatarMessage)
     for message in (Configure(scene="nowhere"), Configure(avatar="nobody"), Configure(planner="magic")):
