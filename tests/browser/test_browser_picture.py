@@ -48,3 +48,32 @@ def test_with_all_overlays_on_the_avatar_stays_in_sight(open_page: Open, camera:
     bare = body(live)
     for part, (_, _, most) in PARTS.items():
         assert np.abs(covered[part] - bare[part]).mean() < most, part
+
+
+def contrasts_ahead(live: LivePage) -> NDArray[np.float64]:
+    """How much colours differ (of 255) along rows of the picture, left of who walks, from knees' height downwards."""
+    state = live.state()
+    (x, top), (_, bottom) = state["head"], state["feet"]
+    above = 0.3 * (bottom - top)
+    box = {"x": 0.0, "y": bottom - above, "width": 0.7 * x, "height": 600.0 - bottom + above}
+    picture = Image.open(io.BytesIO(live.page.screenshot(clip=box)))
+    rows = np.asarray(picture.convert("RGB"), np.float64)
+    contrasts: NDArray[np.float64] = np.ptp(rows, axis=1).mean(axis=1)
+    return contrasts
+
+
+def test_past_the_finish_the_avatar_walks_on_and_so_does_the_ground(open_page: Open) -> None:
+    """Its squares and lines are there where the scene's own floor, which ends at 8 m, has long ended."""
+    live = open_page("scene=doorway&speed=1.6&ui=0&camera=behind", viewport=(800, 600))
+    live.wait("s.scene === 'doorway'")
+    live.page.keyboard.down("w")
+    live.wait("s.finished")
+    beyond = live.wait("s.root.z > 14")
+    assert (beyond["finished"], beyond["crossed"], beyond["stuckNow"], beyond["heldKeys"]) == (True, 1, False, 1)
+    live.page.keyboard.press("p")
+    live.page.keyboard.up("w")
+    live.wait("s.paused")
+    live.settle()
+    contrasts = contrasts_ahead(live)
+    assert len(contrasts) > 100
+    assert float(np.median(contrasts)) > 5.0  # it is 17; of one colour all over it would be 0
