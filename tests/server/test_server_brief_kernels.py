@@ -10,13 +10,13 @@ import numpy as np
 import pytest
 
 from elbowroom.control.plans.desk import Job
-from elbowroom.jit import kernels_made
 from elbowroom.server.schema.commands import Input
 from elbowroom.server.sessions.stage import STEP, Stage
 from elbowroom.server.sessions.walk import Walk, WalkSettings
 from elbowroom.server.stores.avatar_store import AvatarStore
 from elbowroom.world.scene import Scene
 from late_desk import LateDesk
+from noted_kernels import note_kernels
 
 _WALK = [*[Input(1, forward=1.0)] * 90, *[Input(2, forward=1.0, strafe=1.0)] * 40, *[Input(3)] * 30]
 
@@ -32,20 +32,14 @@ class _Entered:
         self.kept: set[str] = set()  # and what keeps it
         self.large: set[str] = set()  # by plans: what keeps it, and is given much
         self.planning = False
-        for kernel in kernels_made():
-            if kernel.__module__.startswith("elbowroom.") and not kernel.targetoptions.get("no_cpython_wrapper"):
-                monkeypatch.setattr(kernel, "__class__", self._noting(type(kernel)))
+        note_kernels(monkeypatch, self._note)
 
-    def _noting(self, dispatchers: type) -> type:
-        def call(kernel: Any, *arguments: Any) -> Any:
-            name, keeps = f"{kernel.__module__}.{kernel.__name__}", not kernel.targetoptions["nogil"]
-            if not self.planning:
-                (self.kept if keeps else self.released).add(name)
-            elif keeps and any(isinstance(one, np.ndarray) and one.size > _LITTLE for one in arguments):
-                self.large.add(name)
-            return dispatchers.__call__(kernel, *arguments)
-
-        return type(dispatchers.__name__, (dispatchers,), {"__call__": call})
+    def _note(self, kernel: Any, arguments: tuple[Any, ...]) -> None:
+        name, keeps = f"{kernel.__module__}.{kernel.__name__}", not kernel.targetoptions["nogil"]
+        if not self.planning:
+            (self.kept if keeps else self.released).add(name)
+        elif keeps and any(isinstance(one, np.ndarray) and one.size > _LITTLE for one in arguments):
+            self.large.add(name)
 
 
 class _Apart(LateDesk):
