@@ -139,7 +139,7 @@ def test_a_run_that_is_read_slowly_arrives_whole(looks: Looks, library: Library,
 def test_the_model_of_a_place_that_is_read_slowly_arrives_whole(looks: Looks, library: Library, tmp_path: Path) -> None:
     model = library.avatars.folder / f"{'a' * 32}.glb"
     model.write_bytes(os.urandom(LARGE))
-    library.add_place(Scene.load(write_place(tmp_path / "rooms.glb")), model)
+    library.sent.add_place(Scene.load(write_place(tmp_path / "rooms.glb")), model)
     with running(library) as url, closing(opened(url, A_LOOK)) as client:
         assert slowly(client, looks, f"/places/{model.name}") == model.read_bytes()
 

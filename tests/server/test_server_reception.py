@@ -39,14 +39,14 @@ async def is_let_in(upload: Visitor) -> bool:
 
 async def let_in(app: Starlette, machine: str, desks: Sequence[str]) -> list[Visitor]:
     """Uploads of a machine, one at each desk, all of which are waited for."""
-    uploads = [Visitor(app, "POST", desk, machine, "avatar=stock") for desk in desks]
+    uploads = [Visitor(app, "POST", desk, machine, "avatar=stock&format=bvh") for desk in desks]
     assert [await is_let_in(upload) for upload in uploads] == [True] * len(desks)
     return uploads
 
 
 async def are_sent_away(app: Starlette, machine: str, desks: Sequence[str]) -> bool:
     """Whether all uploads of a machine are, one at each desk."""
-    return not any([await is_let_in(Visitor(app, "POST", desk, machine, "avatar=stock")) for desk in desks])
+    return not any([await is_let_in(Visitor(app, "POST", desk, machine, "avatar=stock&format=bvh")) for desk in desks])
 
 
 async def ended(uploads: Sequence[Visitor], way: bytes | None) -> list[int]:

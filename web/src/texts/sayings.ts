@@ -38,7 +38,8 @@ export const SAYINGS: Readonly<Record<string, string>> = {
   // scenes and what is in them
   "that scene is not here any more; open it in build mode and walk it again": "該場景已不在伺服器上；請在建造模式開啟後再行走",
   "that place is not here any more; drop its file on the page again": "該場所已不在伺服器上；請重新拖放其檔案",
-  "scene {0} is not known here; there are {1}, and courses: {2}": "沒有場景 {0}；可用的有 {1}，以及隨機關卡：{2}",
+  "scene {0} is not known here; there are {1}, dropped models, and {2}":
+    "沒有場景 {0}；可用的有 {1}、拖放到頁面的場所模型，以及隨機關卡 {2}",
   "clip {0} is not known here (any more); drop its file on the page again": "動作片段 {0} 已不在伺服器上；請重新拖放其檔案",
   "avatar {0} is not known here (any more); drop its file on the page again": "角色 {0} 已不在伺服器上；請重新拖放其檔案",
   "{0} is not read yet": "{0} 尚未讀取完成",

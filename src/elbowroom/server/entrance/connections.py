@@ -119,7 +119,7 @@ class Patience:
     """How long a connection may do nothing, in seconds, and what may be open at once."""
 
     request: float = 10.0  # until a request's head is there
-    reading: float = 15.0  # without taking any of what is sent to it
+    reading: float = 40.0  # without taking any of what is sent to it, which a slow line takes 120 kB at a time
     closing: float = 3.0  # between the end of a connection and the last byte taken
     unread: int = 4 * 2**20  # bytes that may wait for a client
     idle: int = 128  # connections without a request

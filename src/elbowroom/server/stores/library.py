@@ -126,7 +126,7 @@ class Library:
             return
         if not name.startswith(PREFIX):
             known = ", ".join(self.scenes)
-            raise InputError(f"scene {name[:40]!r} is not known here; there are {known}, and courses: {NAMED}")
+            raise InputError(f"scene {name[:40]!r} is not known here; there are {known}, dropped models, and {NAMED}")
         parse_name(name)
 
     @cached_property
