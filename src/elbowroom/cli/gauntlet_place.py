@@ -41,7 +41,7 @@ def chosen_place(
 
     if kind_by_name(str(place)) is None:
         raise InputError(
-            f"--place {place}: is no model of a place by its name: .glb, .gltf, .obj, .stl, .ply, .x3d, .wrl"
+            f"--place {place}: is no model of a place by its name: .glb, .gltf, .obj, .stl, .ply, .usd, .x3d, .wrl"
         )
     return FurnishedPlace(place, _digest(place), options, _PIECES if pieces is None else pieces)
 

@@ -65,6 +65,9 @@ def open_motion(path: Path, told: Told | None = None) -> MotionFile:
     return parse_motion(data, path.name, told, path.parent, None if beside is None else read_override(beside))
 
 
+_SKELETAL = (b"SkelAnimation", b"SkelRoot", b"Skeleton")  # in text; a binary file packs its names
+
+
 def parse_motion(
     data: bytes, name: str, told: Told | None = None, folder: Path | None = None, bones: Field | None = None
 ) -> MotionFile:
@@ -87,9 +90,11 @@ def parse_motion(
 
 
 def is_motion_only(data: bytes, name: str) -> bool:
-    """Whether a file shows no avatar: BVH, USD, a VRM animation, or a glTF without meshes that is animated."""
-    if is_bvh(data) or is_usd(data):
+    """Whether a file shows no avatar: BVH, USD with a skeleton, a VRM animation, or a glTF that is animated only."""
+    if is_bvh(data):
         return True
+    if is_usd(data):
+        return any(word in data for word in _SKELETAL)
     if not _is_gltf(data):
         return False
     root = parse_gltf(data, name).root

@@ -23,7 +23,7 @@ from elbowroom.world.stock_scenes import check_scene_name, stock_folder, stock_n
 from elbowroom.world.stops import Stop
 
 MAX_FILE_BYTES = 16 * 2**20
-_SCENES_ARE = "a scene is a JSON file or a model of a place: glTF, X3D, VRML97, OBJ, STL or PLY (docs/scenes.md)"
+_SCENES_ARE = "a scene is a JSON file or a model of a place: glTF, X3D, VRML97, OBJ, STL, PLY or USD (docs/scenes.md)"
 
 
 @dataclass(frozen=True)

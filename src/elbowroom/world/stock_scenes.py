@@ -6,7 +6,7 @@ from pathlib import Path
 
 from elbowroom.errors import InputError
 
-_FILES = "a scene's file (.json) nor a model of a place (.glb, .gltf, .obj, .stl, .ply, .x3d, .wrl)"
+_FILES = "a scene's file (.json) nor a model of a place (.glb, .gltf, .obj, .stl, .ply, .usd, .x3d, .wrl)"
 
 
 class UnknownSceneError(InputError):

@@ -17,11 +17,12 @@ class ModelKind(Enum):
     OBJ = "OBJ"
     STL = "STL"
     PLY = "PLY"
+    USD = "USD"
 
     @property
     def says_its_unit(self) -> bool:
-        """Whether the format's standard says that lengths are metres and Y is up."""
-        return self in (ModelKind.GLTF, ModelKind.X3D)
+        """Whether the format's standard says how long a unit is, and which way is up."""
+        return self in (ModelKind.GLTF, ModelKind.X3D, ModelKind.USD)
 
 
 _BY_SUFFIX = {
@@ -31,9 +32,22 @@ _BY_SUFFIX = {
     ".stl": ModelKind.STL,
     ".ply": ModelKind.PLY,
     ".vrml": ModelKind.X3D,
+    **dict.fromkeys((".usd", ".usda", ".usdc", ".usdz"), ModelKind.USD),
     **dict.fromkeys(X3D_SUFFIXES, ModelKind.X3D),
 }
 MODEL_SUFFIXES = tuple(_BY_SUFFIX)
+
+
+_BEGINNINGS = (
+    (b"glTF", ModelKind.GLTF),
+    (b"{", ModelKind.GLTF),
+    (b"#VRML", ModelKind.X3D),
+    (b"#X3D", ModelKind.X3D),
+    (b"ply\n", ModelKind.PLY),
+    (b"ply\r", ModelKind.PLY),
+    (b"#usda", ModelKind.USD),
+    (b"PXR-USDC", ModelKind.USD),
+)
 
 
 def kind_by_name(name: str) -> ModelKind | None:
@@ -46,19 +60,16 @@ def kind_by_name(name: str) -> ModelKind | None:
 def kind_of(data: bytes, name: str) -> ModelKind | None:
     """The format of these bytes; None where it is none that is read."""
     head = data[:256].lstrip(b"\xef\xbb\xbf \t\r\n")
+    told = next((kind for beginning, kind in _BEGINNINGS if head.startswith(beginning)), None)
+    if told is not None:
+        return told
     named = kind_by_name(name)
-    if head.startswith(b"glTF"):
-        return ModelKind.GLTF
-    if head.startswith(b"ply\n") or head.startswith(b"ply\r"):
-        return ModelKind.PLY
-    if (head.startswith((b"#VRML", b"#X3D", b"<")) and COLLADA not in data[:4096]) or (
-        named is ModelKind.X3D and is_x3d(data)
-    ):
+    if (head.startswith(b"<") and COLLADA not in data[:4096]) or (named is ModelKind.X3D and is_x3d(data)):
         return ModelKind.X3D
     if (head.startswith(b"solid") and b"facet" in data[:4096]) or _is_binary_stl(data):
         return ModelKind.STL
-    if head.startswith(b"{"):
-        return ModelKind.GLTF
+    if named is ModelKind.USD and head.startswith(b"PK\x03\x04"):
+        return ModelKind.USD
     return named if named is ModelKind.OBJ else None
 
 

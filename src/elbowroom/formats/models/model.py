@@ -4,9 +4,10 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from elbowroom.errors import InputError
-from elbowroom.formats.fields import beginning_of
+from elbowroom.formats.foreign_files import told_apart
 from elbowroom.formats.gltf import Gltf, parse_gltf
 from elbowroom.formats.models.kinds import ModelKind, kind_of
+from elbowroom.formats.models.said import Said
 
 MAX_BYTES = 200 * 2**20  # of a model's file
 
@@ -19,6 +20,7 @@ class Model:
     kind: ModelKind
     data: bytes  # the file, as it is
     notes: tuple[str, ...]  # what was left out in reading it
+    said: Said | None = None  # of units and axes, by the file itself
 
 
 def read_model(path: Path) -> Model:
@@ -51,8 +53,13 @@ def parse_model(data: bytes, name: str, folder: Path | None = None) -> Model:
             from elbowroom.formats.models.loose_triangles import parse_loose_triangles
 
             return Model(*_with(kind, data, *parse_loose_triangles(data, kind, name, folder)))
+        case ModelKind.USD:
+            from elbowroom.formats.models.usd.as_gltf import parse_usd_scene
+
+            gltf, said = parse_usd_scene(data, name, folder)
+            return Model(gltf, kind, data, (), said)
     formats = ", ".join(each.value for each in ModelKind)
-    raise InputError(f"{name}{beginning_of(data)}: it is no model of a format that is read ({formats})")
+    raise InputError(told_apart(name, data, f"it is no model of a format that is read ({formats})"))
 
 
 def _with(

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.formats.models.kinds import ModelKind
+from elbowroom.formats.models.said import Said
 from elbowroom.world.places.options import PlaceOptions
 
 Floats = NDArray[np.float64]
@@ -39,12 +40,14 @@ class Stance:
     notes: tuple[str, ...]
 
 
-def stance_of(vertices: Floats, faces: Ints, kind: ModelKind, options: PlaceOptions) -> Stance:
-    """Stand a model up: vertices (V, 3) in the file's axes and units, faces (F, 3)."""
-    up, why_up = _up_of(vertices, faces, kind, options)
+def stance_of(
+    vertices: Floats, faces: Ints, kind: ModelKind, options: PlaceOptions, said: Said | None = None
+) -> Stance:
+    """Stand a model up: vertices (V, 3) in the file's axes and units, faces (F, 3); `said` is what the file says."""
+    up, why_up = _up_of(vertices, faces, kind, options) if said is None else _said_up(said, options)
     turn = np.array(_TURNS[up], np.float64)
     extents = np.ptp(vertices @ turn.T, axis=0)
-    metre, why_metre = _metre_of(float(extents[1]), kind, options)
+    metre, why_metre = _metre_of(float(extents[1]), kind, options) if said is None else _said_metre(said, options)
     wide = metre * float(max(extents[0], extents[2]))
     notes: tuple[str, ...] = ()
     if not _SMALLEST <= wide <= _LARGEST:
@@ -61,6 +64,18 @@ def _up_of(vertices: Floats, faces: Ints, kind: ModelKind, options: PlaceOptions
         return "z", f"+Z is up: only across it there is a floor{odd} (--up tells otherwise)"
     why = "as the format says" if kind.says_its_unit else "as in most files"
     return "y", f"+Y is up, {why}"
+
+
+def _said_up(said: Said, options: PlaceOptions) -> tuple[str, str]:
+    if options.up is not None:
+        return options.up, f"{_signed(options.up)} is up, as told"
+    return said.up, f"{_signed(said.up)} is up, as the file says"
+
+
+def _said_metre(said: Said, options: PlaceOptions) -> tuple[float, str]:
+    if options.scale is not None:
+        return options.scale, f"a unit is {options.scale:g} m, as told"
+    return said.metre, f"a unit is {said.metre:g} m, as the file says"
 
 
 def _signed(axis: str) -> str:

@@ -121,7 +121,7 @@ def _stance(shown: list[tuple[int, Floats, NDArray[np.int64]]], model: Model, op
     starts = np.cumsum([0, *(len(points) for _, points, _ in shown[:-1])])
     vertices = np.concatenate([points for _, points, _ in shown])
     faces = np.concatenate([faces + start for (_, _, faces), start in zip(shown, starts, strict=True)])
-    return stance_of(vertices, faces, model.kind, options)
+    return stance_of(vertices, faces, model.kind, options, model.said)
 
 
 def _names(tree: NodeTree) -> tuple[str, ...]:

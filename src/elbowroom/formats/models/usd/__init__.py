@@ -1,0 +1,1 @@
+"""Models of places in USD (.usda, .usdc, .usdz), read by usd-core: the extra `[usd]`."""
