@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from elbowroom.formats.fields import parse_json
+from elbowroom.formats.models.matt import matt
 from elbowroom.formats.packing import pack_glb, write_glb
 from elbowroom.world.places.place import Place
 
@@ -61,10 +62,5 @@ def _paint(content: dict[str, Any]) -> None:
             if "material" not in primitive:
                 if name not in kinds:
                     kinds[name] = len(content.setdefault("materials", []))
-                    content["materials"].append(_matt(_TINTS[len(kinds) % len(_TINTS)]))
+                    content["materials"].append(matt(_TINTS[len(kinds) % len(_TINTS)]))
                 primitive["material"] = kinds[name]
-
-
-def _matt(colour: tuple[float, float, float]) -> dict[str, Any]:
-    surface = {"baseColorFactor": [*colour, 1.0], "metallicFactor": 0.0, "roughnessFactor": 0.9}
-    return {"pbrMetallicRoughness": surface, "doubleSided": True}

@@ -8,6 +8,7 @@ import numpy as np
 from elbowroom.errors import InputError
 from elbowroom.formats.glb_draft import GlbDraft
 from elbowroom.formats.gltf import Gltf, parse_gltf
+from elbowroom.formats.models.matt import matt
 from elbowroom.formats.models.said import Said
 from elbowroom.formats.models.usd.opening import opened_stage
 from elbowroom.formats.models.usd.pieces import Piece, pieces_of
@@ -42,7 +43,7 @@ def _drawn(pieces: list[Piece], name: str) -> bytes:
         }
         if piece.colour is not None:
             if piece.colour not in materials:
-                materials[piece.colour] = draft.add("materials", _matt(piece.colour))
+                materials[piece.colour] = draft.add("materials", matt(piece.colour))
             primitive["material"] = materials[piece.colour]
         mesh = draft.add("meshes", {"primitives": [primitive]})
         parent = _node(draft, nodes, piece.path[:-1])
@@ -57,8 +58,3 @@ def _node(draft: GlbDraft, nodes: dict[tuple[str, ...], int], path: tuple[str, .
     if path not in nodes:
         nodes[path] = draft.add_node(path[-1], _node(draft, nodes, path[:-1]))
     return nodes[path]
-
-
-def _matt(colour: tuple[float, float, float]) -> dict[str, Any]:
-    surface = {"baseColorFactor": [*colour, 1.0], "metallicFactor": 0.0, "roughnessFactor": 0.9}
-    return {"pbrMetallicRoughness": surface, "doubleSided": True}
