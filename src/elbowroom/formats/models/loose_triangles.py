@@ -33,7 +33,7 @@ def parse_loose_triangles(data: bytes, kind: ModelKind, name: str, folder: Path 
             if not any(len(getattr(mesh, "faces", ())) for mesh in scene.geometry.values()):
                 raise InputError(f"{name}: there are no triangles in this {kind.value} file")
             glb = scene.export(file_type="glb")
-    except InputError:
+    except (InputError, MemoryError):  # of the latter who has bounded memory tells
         raise
     except Exception as error:  # whatever the library raises, the file is not what it should be
         raise InputError(f"{name}: is no {kind.value} file that can be read ({_in_short(error)})") from None

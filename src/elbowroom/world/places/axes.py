@@ -44,10 +44,10 @@ def stance_of(
     vertices: Floats, faces: Ints, kind: ModelKind, options: PlaceOptions, said: Said | None = None
 ) -> Stance:
     """Stand a model up: vertices (V, 3) in the file's axes and units, faces (F, 3); `said` is what the file says."""
-    up, why_up = _up_of(vertices, faces, kind, options) if said is None else _said_up(said, options)
+    up, why_up = _up_of(vertices, faces, kind, options, said)
     turn = np.array(_TURNS[up], np.float64)
     extents = np.ptp(vertices @ turn.T, axis=0)
-    metre, why_metre = _metre_of(float(extents[1]), kind, options) if said is None else _said_metre(said, options)
+    metre, why_metre = _metre_of(float(extents[1]), kind, options, said)
     wide = metre * float(max(extents[0], extents[2]))
     notes: tuple[str, ...] = ()
     if not _SMALLEST <= wide <= _LARGEST:
@@ -55,27 +55,17 @@ def stance_of(
     return Stance(up, metre, turn, (why_up, why_metre), notes)
 
 
-def _up_of(vertices: Floats, faces: Ints, kind: ModelKind, options: PlaceOptions) -> tuple[str, str]:
+def _up_of(vertices: Floats, faces: Ints, kind: ModelKind, options: PlaceOptions, said: Said | None) -> tuple[str, str]:
     if options.up is not None:
         return options.up, f"{_signed(options.up)} is up, as told"
+    if said is not None:
+        return said.up, f"{_signed(said.up)} is up, as the file says"
     y, z = _floor_share(vertices, faces, 1), _floor_share(vertices, faces, 2)
     if y < _NO_FLOOR and z > _A_FLOOR:
         odd = ", although the format says +Y" if kind.says_its_unit else ""
         return "z", f"+Z is up: only across it there is a floor{odd} (--up tells otherwise)"
     why = "as the format says" if kind.says_its_unit else "as in most files"
     return "y", f"+Y is up, {why}"
-
-
-def _said_up(said: Said, options: PlaceOptions) -> tuple[str, str]:
-    if options.up is not None:
-        return options.up, f"{_signed(options.up)} is up, as told"
-    return said.up, f"{_signed(said.up)} is up, as the file says"
-
-
-def _said_metre(said: Said, options: PlaceOptions) -> tuple[float, str]:
-    if options.scale is not None:
-        return options.scale, f"a unit is {options.scale:g} m, as told"
-    return said.metre, f"a unit is {said.metre:g} m, as the file says"
 
 
 def _signed(axis: str) -> str:
@@ -95,9 +85,11 @@ def _floor_share(vertices: Floats, faces: Ints, axis: int) -> float:
     return covered / ground if ground > 0.0 else 0.0
 
 
-def _metre_of(height: float, kind: ModelKind, options: PlaceOptions) -> tuple[float, str]:
+def _metre_of(height: float, kind: ModelKind, options: PlaceOptions, said: Said | None) -> tuple[float, str]:
     if options.scale is not None:
         return options.scale, f"a unit is {options.scale:g} m, as told"
+    if said is not None:
+        return said.metre, f"a unit is {said.metre:g} m, as the file says"
     if kind.says_its_unit:
         return 1.0, "a unit is 1 m, as the format says"
     tall = max(height, 1e-9)

@@ -9,6 +9,7 @@ from typing import Any
 from elbowroom.errors import InputError
 
 _MOST_LAYERS = 1000
+_DAMAGED = "is no USD file that can be read: it is damaged or cut off; save it again"
 _BINARY, _PACKED = b"PXR-USDC", b"PK\x03\x04"
 
 
@@ -27,14 +28,13 @@ def opened_stage(data: bytes, name: str, folder: Path | None) -> Iterator[Any]:
         try:
             layer = Sdf.Layer.FindOrOpen(str(file))
             if layer is None:
-                raise InputError(f"{name}: is no USD file that can be read")
+                raise InputError(f"{name}: {_DAMAGED}")
             _check_layers(layer, name, folder)
             stage = Usd.Stage.Open(layer, Usd.Stage.LoadAll)
-        except InputError:
+        except (InputError, MemoryError):
             raise
-        except Exception as error:  # whatever the library raises, the file is not what it should be
-            said = " ".join(str(error).split())[:80]
-            raise InputError(f"{name}: is no USD file that can be read ({said})") from None
+        except Exception:  # whatever the library raises, the file is not what it should be
+            raise InputError(f"{name}: {_DAMAGED}") from None
         yield stage
     del silent
 
