@@ -147,7 +147,8 @@ def test_a_line_is_the_integral_of_its_heading() -> None:
     assert np.allclose(np.gradient(heading, way), line.curvature(way), atol=1e-3)
     assert line.heading(8.0) == pytest.approx(-0.1)
     assert line.nearest(float(line.points(5.0)[0]), float(line.points(5.0)[1]), 4.5) == pytest.approx(5.0, abs=0.005)
-    assert np.allclose(line.local(5.0, (0.3, 1.0, 0.0))[[0, 2]] - line.points(5.0), 0.3 * left_of(line, 5.0))
+    x, _, z = line.spot(5.0).world(0.3, 1.0, 0.0)
+    assert np.allclose((x, z) - line.points(5.0), 0.3 * left_of(line, 5.0))
 
 
 def left_of(line: CourseLine, way: float) -> np.ndarray:

@@ -5,7 +5,7 @@ import numpy as np
 
 from elbowroom.body.dof import LOCAL
 from elbowroom.experiment.gauntlet.body_rows import BodyRows, joined, rows_of
-from elbowroom.experiment.gauntlet.placing import Placed
+from elbowroom.experiment.gauntlet.placing import Keepout, Placed, pushed
 from gauntlet_courses import stock
 
 
@@ -23,12 +23,42 @@ def test_gaps_equal_those_of_coal() -> None:
 def test_of_many_rows_the_gap_is_that_of_the_nearest() -> None:
     rng = np.random.default_rng(2)
     begins, radii = rng.uniform(-2.0, 2.0, (400, 3)), rng.uniform(0.02, 0.2, 400)
-    rows = BodyRows(np.concatenate([begins, begins + rng.normal(0.0, 0.2, (400, 3))], axis=1), radii, begins[:, 0])
+    begins[:200] = np.sort(begins[:200], axis=0)  # as a body walks; the others are scattered
+    way = begins[:, 0].copy()
+    rows = BodyRows(np.concatenate([begins, begins + rng.normal(0.0, 0.2, (400, 3))], axis=1), radii, way)
     alone = [BodyRows(rows.axes[i : i + 1], rows.radii[i : i + 1], rows.way[i : i + 1]) for i in range(400)]
     for _ in range(50):
         turn, size = tuple(rng.uniform(-3, 3, 3).tolist()), tuple(rng.uniform(0.05, 1.5, 3).tolist())
         box = Placed("box", tuple(rng.uniform(-3.0, 3.0, 3).tolist()), turn, size).row()
         assert rows.gap(box) == min(row.gap(box) for row in alone)
+
+
+def test_a_box_is_pushed_as_far_as_it_has_slack() -> None:
+    rng = np.random.default_rng(3)
+    begins = np.sort(rng.uniform(-1.0, 1.0, (90, 3)), axis=0)
+    way = begins[:, 2].copy()
+    rows = BodyRows(np.concatenate([begins, begins + 0.1], axis=1), np.full(90, 0.1), way)
+    others = rows.every(4)
+    keepout = Keepout(rows.pieces, others.pieces, 0.02, 0.03)
+    for _ in range(50):
+        direction = rng.normal(size=3)
+        push, most = direction / np.linalg.norm(direction), float(rng.uniform(1.0, 4.0))
+        turn, size = tuple(rng.uniform(-3, 3, 3).tolist()), tuple(rng.uniform(0.05, 0.5, 3).tolist())
+        box = Placed("box", tuple((-3.0 * push + 0.3 * rng.normal(size=3)).tolist()), turn, size).row()
+        assert pushed(keepout, box, push, 0.0, most) == plainly_pushed(rows, others, box, push, most)
+
+
+def plainly_pushed(rows: BodyRows, others: BodyRows, box: np.ndarray, push: np.ndarray, most: float) -> float:
+    done = 0.0
+    for _ in range(30):
+        moved = np.concatenate([box[:3] + done * push, box[3:]])
+        slack = min(rows.gap(moved) - 0.02, others.gap(moved) - 0.03) - 1e-3
+        if slack < 1e-3:
+            return done
+        done += slack
+        if done > most:
+            return 0.0
+    return done
 
 
 def coal_gap(axis: np.ndarray, radius: float, row: np.ndarray) -> float:

@@ -7,6 +7,7 @@ otherwise, a distance would have to lie within some 1e-15 m of a threshold.
 import math
 from dataclasses import dataclass
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,6 +15,19 @@ from numpy.typing import NDArray
 from elbowroom.jit import exact_kernel, helper, inner_exact_kernel
 
 Floats = NDArray[np.float64]
+Indices = NDArray[np.int64]
+
+_PIECE = 8  # rows at most
+_ROUNDING = 1e-9  # metres by which bounds are less: far more than they are wrong by, so the least gap is found exactly
+
+
+class Pieces(NamedTuple):
+    """The same rows for kernels, in pieces: rows one after the other on the way, few of which matter to a box."""
+
+    axes: Floats  # (M, 6)
+    radii: Floats  # (M,)
+    begins: Indices  # (P + 1,) first row of each piece, and the number of rows
+    around: Floats  # (7, P) middle and half sizes of a box around the axes of each piece, and their greatest radius
 
 
 @dataclass(frozen=True, eq=False)
@@ -26,31 +40,33 @@ class BodyRows:
 
     def between(self, first: float, last: float) -> "BodyRows":
         """The rows of a part of the way."""
-        chosen = (self.way >= first) & (self.way <= last)
-        return BodyRows(self.axes[chosen], self.radii[chosen], self.way[chosen])
+        return self._chosen(np.flatnonzero((self.way >= first) & (self.way <= last)))
 
     def every(self, step: int) -> "BodyRows":
         """Every `step`-th row."""
-        return BodyRows(self.axes[::step].copy(), self.radii[::step].copy(), self.way[::step].copy())
+        return self._chosen(np.arange(0, len(self.way), step))
+
+    def _chosen(self, rows: Indices) -> "BodyRows":
+        return BodyRows(self.axes.take(rows, axis=0), self.radii.take(rows), self.way.take(rows))
 
     def gap(self, box: Floats) -> float:
         """The least clearance of any row from a box (15,); infinite without rows.
 
         A box is its centre, the rotation matrix from the world to its axes row by row, and half its sizes.
         """
-        return float(_least_gap(self.axes, self.radii, self._spheres, box))
+        return float(least_gap(self.pieces, box))
 
     @cached_property
-    def _spheres(self) -> Floats:
-        return _spheres_around(self.axes, self.radii)
+    def pieces(self) -> Pieces:
+        """The rows for kernels."""
+        return Pieces(self.axes, self.radii, *_pieces(self.axes, self.radii, self.way))
 
 
 def rows_of(segments: NDArray[np.floating], radii: Floats, way: Floats) -> BodyRows:
     """Rows for capsules (C, 6, N) with radii (C,) or (C, N) at ways (N,)."""
-    count = segments.shape[2]
-    sizes = np.broadcast_to(radii if radii.ndim == 2 else radii[:, None], (len(segments), count))
-    axes = np.ascontiguousarray(segments.astype(np.float64).transpose(0, 2, 1).reshape(-1, 6))
-    return BodyRows(axes, np.ascontiguousarray(sizes, np.float64).ravel(), np.tile(way, len(segments)))
+    sizes = radii if radii.ndim == 2 else np.repeat(radii[:, None], len(way), axis=1)
+    axes = np.ascontiguousarray(segments.transpose(0, 2, 1), np.float64).reshape(-1, 6)
+    return BodyRows(axes, sizes.ravel(), np.tile(way, len(segments)))
 
 
 def joined(*parts: BodyRows) -> BodyRows:
@@ -60,48 +76,80 @@ def joined(*parts: BodyRows) -> BodyRows:
 
 
 @exact_kernel
-def _least_gap(axes: Floats, radii: Floats, spheres: Floats, box: Floats) -> float:
-    """The least distance of axes (M, 6) from a box (15,) less their radii (M,).
+def least_gap(rows: Pieces, box: Floats) -> float:
+    """The least clearance of any row from a box (15,).
 
-    A row whose sphere (4, M) is too far away to matter is skipped.
+    The piece that may be nearest is looked at first; pieces and rows that cannot be nearer than what was found are not.
     """
-    best, p, d = np.inf, np.empty(3), np.empty(3)
-    least = _least_of_spheres(spheres, box)
-    for i in range(axes.shape[0]):
-        if least[i] < best:
-            a = axes[i]
-            for k in range(3):
-                m = 3 + 3 * k
-                p[k] = box[m] * (a[0] - box[0]) + box[m + 1] * (a[1] - box[1]) + box[m + 2] * (a[2] - box[2])
-                d[k] = box[m] * (a[3] - a[0]) + box[m + 1] * (a[4] - a[1]) + box[m + 2] * (a[5] - a[2])
-            best = min(best, _axis_to_box(p, d, box[12:]) - radii[i])
+    best, least, axis = np.inf, _least_of_pieces(rows.around, box), np.empty((2, 3))
+    if len(least) > 0:
+        best = _gap_of_piece(rows, int(np.argmin(least)), box, best, axis)
+    for piece in range(len(least)):
+        if least[piece] < best:
+            best = _gap_of_piece(rows, piece, box, best, axis)
     return best
 
 
-@exact_kernel
-def _spheres_around(axes: Floats, radii: Floats) -> Floats:
-    """Spheres (4, M), their middle and radius, around capsules: axes (M, 6), radii (M,)."""
-    spheres = np.empty((4, axes.shape[0]))
-    for i in range(axes.shape[0]):
-        half = 0.0
+@helper
+def _least_of_pieces(around: Floats, box: Floats) -> Floats:
+    """What the clearance of pieces with boxes (7, P) around them from a box (15,) is at least (P,)."""
+    least = np.empty(around.shape[1])
+    for i in range(np.uint64(least.shape[0])):
+        square = 0.0
         for k in range(3):
-            spheres[k, i] = 0.5 * (axes[i, k] + axes[i, k + 3])
-            half += (0.5 * (axes[i, k + 3] - axes[i, k])) ** 2
-        spheres[3, i] = math.sqrt(half) + radii[i]
-    return spheres
+            across, up, ahead = box[3 + 3 * k], box[4 + 3 * k], box[5 + 3 * k]
+            x, y, z = around[0, i] - box[0], around[1, i] - box[1], around[2, i] - box[2]
+            reach = abs(across) * around[3, i] + abs(up) * around[4, i] + abs(ahead) * around[5, i]
+            square += max(abs(across * x + up * y + ahead * z) - reach - box[12 + k], 0.0) ** 2
+        least[i] = math.sqrt(square) - around[6, i] - _ROUNDING
+    return least
+
+
+@inner_exact_kernel
+def _gap_of_piece(rows: Pieces, piece: int, box: Floats, best: float, axis: Floats) -> float:
+    """The least clearance of a piece's rows, or the `best` of others; `axis` is scratch (2, 3)."""
+    axes, radii, p, d, half = rows.axes, rows.radii, axis[0], axis[1], box[12:]
+    for i in range(rows.begins[piece], rows.begins[piece + 1]):
+        square = 0.0
+        for k in range(3):
+            across, up, ahead = box[3 + 3 * k], box[4 + 3 * k], box[5 + 3 * k]
+            p[k] = across * (axes[i, 0] - box[0]) + up * (axes[i, 1] - box[1]) + ahead * (axes[i, 2] - box[2])
+            d[k] = (
+                across * (axes[i, 3] - axes[i, 0]) + up * (axes[i, 4] - axes[i, 1]) + ahead * (axes[i, 5] - axes[i, 2])
+            )
+            low, high = min(p[k], p[k] + d[k]), max(p[k], p[k] + d[k])
+            square += max(low - half[k], -half[k] - high, 0.0) ** 2
+        if math.sqrt(square) - radii[i] - _ROUNDING < best:
+            best = min(best, _axis_to_box(p, d, half) - radii[i])
+    return best
 
 
 @helper
-def _least_of_spheres(spheres: Floats, box: Floats) -> Floats:
-    """What the clearance of capsules in spheres (4, M) from a box (15,) is at least (M,)."""
-    squares = np.zeros(spheres.shape[1])
-    for k in range(3):
-        across, up, ahead = box[3 + 3 * k], box[4 + 3 * k], box[5 + 3 * k]
-        for i in range(np.uint64(squares.shape[0])):
-            x, y, z = spheres[0, i] - box[0], spheres[1, i] - box[1], spheres[2, i] - box[2]
-            squares[i] += max(abs(across * x + up * y + ahead * z) - box[12 + k], 0.0) ** 2
-    least: Floats = np.sqrt(squares) - spheres[3]
-    return least
+def _begins(way: Floats) -> Indices:
+    """Where pieces of rows at ways (M,) begin: after some rows, and where the way goes back; and the number of rows."""
+    begins, count = np.empty(len(way) + 1, np.int64), 0
+    for i in range(len(way)):
+        if count == 0 or i - begins[count - 1] == _PIECE or way[i] < way[i - 1]:
+            begins[count] = i
+            count += 1
+    begins[count] = len(way)
+    return begins[: count + 1]
+
+
+@exact_kernel
+def _pieces(axes: Floats, radii: Floats, way: Floats) -> tuple[Indices, Floats]:
+    """Where pieces of capsules with axes (M, 6) and radii (M,) at ways (M,) begin, and the boxes (7, P) around them."""
+    begins = _begins(way)
+    around = np.empty((7, len(begins) - 1))
+    for piece in range(around.shape[1]):
+        first, last = begins[piece], begins[piece + 1]
+        for k in range(3):
+            low = high = axes[first, k]
+            for i in range(first, last):
+                low, high = min(low, axes[i, k], axes[i, k + 3]), max(high, axes[i, k], axes[i, k + 3])
+            around[k, piece], around[k + 3, piece] = 0.5 * (low + high), 0.5 * (high - low)
+        around[6, piece] = radii[first:last].max()
+    return begins, around
 
 
 @inner_exact_kernel

@@ -1,7 +1,9 @@
 """The line on the ground along which a course runs, and the walk along it."""
 
+import math
 from dataclasses import dataclass
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -84,12 +86,24 @@ class CourseLine:
         part = slice(int(first), max(int(last), int(first) + 1))
         return float(way[part][np.argmin(np.hypot(points[part, 0] - x, points[part, 1] - z))])
 
-    def local(self, s: float, offsets: ArrayLike) -> Floats:
-        """Places (..., 3) in the world of offsets (..., 3) to the left, up and ahead of the line's point at `s`."""
-        left, up, ahead = np.moveaxis(np.asarray(offsets, np.float64), -1, 0)
-        heading, (x, z) = float(self.heading(s)), self.points(s)
-        sine, cosine = np.sin(heading), np.cos(heading)
-        return np.stack([x + ahead * sine + left * cosine, up, z + ahead * cosine - left * sine], axis=-1)
+    def spot(self, s: float) -> "Spot":
+        """The line's point at `s` as a frame."""
+        heading, (x, z) = float(self.heading(s)), self.points(s).tolist()
+        return Spot(x, z, heading, math.sin(heading), math.cos(heading))
+
+
+class Spot(NamedTuple):
+    """A frame on the ground, metres and radians."""
+
+    x: float
+    z: float
+    heading: float
+    sine: float  # of the heading
+    cosine: float
+
+    def world(self, left: float, up: float, ahead: float) -> tuple[float, float, float]:
+        """The place in the world of an offset to the left, up and ahead."""
+        return self.x + ahead * self.sine + left * self.cosine, up, self.z + ahead * self.cosine - left * self.sine
 
 
 def walk_along(line: CourseLine, s: ArrayLike, speed: ArrayLike, phase: ArrayLike) -> Floats:

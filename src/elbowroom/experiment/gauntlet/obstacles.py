@@ -24,10 +24,12 @@ _HIGH = 2.5  # metres above the ground where lowering starts
 
 @dataclass(frozen=True)
 class Proposal:
-    """A box somewhere outside, and the direction in which it is pushed. To the left, up, ahead; metres, radians."""
+    """A box somewhere outside, and the direction in which it is pushed.
+
+    To the left, up, ahead of the middle of the passage; metres, radians.
+    """
 
     name: str
-    way: float  # the point of the line to which all is relative
     size: Offset
     turn: Offset  # about the box's own X, Y and Z, in the order "YXZ", beyond the line's heading
     begin: Offset  # centre
@@ -55,13 +57,11 @@ def propose(draw: Draw, passage: Passage, first: bool) -> tuple[Proposal, ...]:
     return draw.one_of(kinds)(draw, passage)
 
 
-def _from_side(
-    passage: Passage, name: str, side: int, size: Offset, height: float, yaw: float, ahead: float
-) -> Proposal:
+def _from_side(name: str, side: int, size: Offset, height: float, yaw: float, ahead: float) -> Proposal:
     """A box that comes from one side at a height (of its centre)."""
     begin = (side * (_FAR + 0.5 * size[0]), height, ahead)
     word = "left" if side > 0 else "right"
-    return Proposal(f"{name}, {word}", passage.middle, size, (0.0, yaw, 0.0), begin, (-float(side), 0.0, 0.0))
+    return Proposal(f"{name}, {word}", size, (0.0, yaw, 0.0), begin, (-float(side), 0.0, 0.0))
 
 
 def _ahead(draw: Draw, passage: Passage) -> float:
@@ -78,7 +78,7 @@ def _post(draw: Draw, passage: Passage) -> tuple[Proposal, ...]:
     thick, deep = draw.between((0.06, 0.14)), draw.between((0.06, 0.14))
     tall = draw.between((0.7, 1.1) if passage.asks in _ARMS_ALONE else (1.2, 2.2))
     side, ahead, yaw = _sides(passage, draw), _ahead(draw, passage), draw.between((-0.7, 0.7))
-    return (_from_side(passage, "post", side, (thick, tall, deep), 0.5 * tall, yaw, ahead),)
+    return (_from_side("post", side, (thick, tall, deep), 0.5 * tall, yaw, ahead),)
 
 
 def _board(draw: Draw, passage: Passage) -> tuple[Proposal, ...]:
@@ -93,7 +93,7 @@ def _one_board(draw: Draw, passage: Passage, name: str, side: int, ahead: float)
     tall = draw.between((0.6 * (high - low), high - low))
     centre = round(draw.between((low, high - tall)) + 0.5 * tall, 3)
     size = (draw.between((0.3, 0.6)), tall, draw.between((0.04, 0.10)))
-    return _from_side(passage, name, side, size, centre, draw.between((-0.3, 0.3)), ahead)
+    return _from_side(name, side, size, centre, draw.between((-0.3, 0.3)), ahead)
 
 
 def _gap(draw: Draw, passage: Passage) -> tuple[Proposal, ...]:
@@ -107,16 +107,14 @@ def _doorway(draw: Draw, passage: Passage) -> tuple[Proposal, ...]:
     low, top = draw.one_of((0.0, 1.08)), draw.between((1.9, 2.2))
     size = (draw.between((0.25, 0.45)), round(top - low, 3), draw.between((0.06, 0.14)))
     ahead, yaw = _ahead(draw, passage), draw.between((-0.15, 0.15))
-    return tuple(
-        _from_side(passage, "door jamb", side, size, round(0.5 * (low + top), 3), yaw, ahead) for side in (1, -1)
-    )
+    return tuple(_from_side("door jamb", side, size, round(0.5 * (low + top), 3), yaw, ahead) for side in (1, -1))
 
 
 def _beam(draw: Draw, passage: Passage) -> tuple[Proposal, ...]:
     size = (draw.between((1.4, 2.2)), draw.between((0.08, 0.16)), draw.between((0.08, 0.16)))
     turn = (0.0, draw.between((-0.4, 0.4)), draw.between((-0.2, 0.2)))
     begin = (draw.between((-0.2, 0.2)), _HIGH, round(_ahead(draw, passage) + _HEAD_START, 3))
-    return (Proposal("beam", passage.middle, size, turn, begin, (0.0, -1.0, 0.0)),)
+    return (Proposal("beam", size, turn, begin, (0.0, -1.0, 0.0)),)
 
 
 def _tilted(draw: Draw, passage: Passage) -> tuple[Proposal, ...]:
@@ -130,7 +128,7 @@ def _tilted(draw: Draw, passage: Passage) -> tuple[Proposal, ...]:
     across, up = side * float(np.cos(rise)), float(np.sin(rise))
     far = _FAR + 0.5
     begin = (round(far * across, 3), round(height + far * up, 3), ahead)
-    return (Proposal("tilted box", passage.middle, size, turn, begin, (-across, -up, 0.0)),)
+    return (Proposal("tilted box", size, turn, begin, (-across, -up, 0.0)),)
 
 
 def _long_size(draw: Draw, passage: Passage) -> float:
@@ -146,7 +144,7 @@ def _one_wall(draw: Draw, passage: Passage, side: int, length: float) -> Proposa
     """A rail or shelf along the way, at the height of hands, elbows or shoulders."""
     low, high = draw.one_of(_LOW_BOARDS if passage.asks in _ARMS_ALONE else _RAILS)
     size = (draw.between((0.05, 0.30)), round(high - low, 3), length)
-    return _from_side(passage, "rail", side, size, round(0.5 * (low + high), 3), 0.0, 0.0)
+    return _from_side("rail", side, size, round(0.5 * (low + high), 3), 0.0, 0.0)
 
 
 def _corridor(draw: Draw, passage: Passage) -> tuple[Proposal, ...]:
@@ -157,7 +155,7 @@ def _corridor(draw: Draw, passage: Passage) -> tuple[Proposal, ...]:
 def _ceiling(draw: Draw, passage: Passage) -> tuple[Proposal, ...]:
     size = (draw.between((1.0, 1.6)), draw.between((0.05, 0.15)), _long_size(draw, passage))
     turn = (0.0, 0.0, draw.between((-0.12, 0.12)))
-    return (Proposal("ceiling", passage.middle, size, turn, (0.0, _HIGH, 0.0), (0.0, -1.0, 0.0)),)
+    return (Proposal("ceiling", size, turn, (0.0, _HIGH, 0.0), (0.0, -1.0, 0.0)),)
 
 
 Kind = Callable[[Draw, Passage], tuple[Proposal, ...]]

@@ -1,20 +1,24 @@
 """Obstacles are pushed towards the line until they are as near to the certificate motion as its margin allows."""
 
+import math
 from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.experiment.gauntlet.body_rows import BodyRows
+from elbowroom.by_reference import by_reference
+from elbowroom.experiment.gauntlet.body_rows import BodyRows, Pieces, least_gap
 from elbowroom.experiment.gauntlet.draw import GRAIN, Draw
 from elbowroom.experiment.gauntlet.levels import Level
-from elbowroom.experiment.gauntlet.line import CourseLine
+from elbowroom.experiment.gauntlet.line import CourseLine, Spot
 from elbowroom.experiment.gauntlet.motion import Passage
 from elbowroom.experiment.gauntlet.obstacles import Proposal, propose
 from elbowroom.experiment.gauntlet.sweep import SweptBody
+from elbowroom.jit import exact_kernel
 
 Floats = NDArray[np.float64]
+Vector = tuple[float, float, float]
 
 _REACH = 1.6  # metres of way before and after a passage that its obstacles may matter to
 _BESIDE = 0.6  # metres of way before and after a passage where the natural walk may touch
@@ -35,68 +39,74 @@ class Placed:
     """An obstacle in its place: whole millimetres and milliradians."""
 
     name: str
-    center: tuple[float, float, float]
-    turn: tuple[float, float, float]  # about X, Y, Z in the order "YXZ", radians
-    size: tuple[float, float, float]
+    center: Vector
+    turn: Vector  # about X, Y, Z in the order "YXZ", radians
+    size: Vector
 
     def row(self) -> Floats:
         """The obstacle as a row (15,), for `BodyRows.gap`."""
-        return np.concatenate([self.center, _to_box(self.turn).ravel(), 0.5 * np.array(self.size)])
+        return np.array([*self.center, *_to_box(self.turn), *(0.5 * side for side in self.size)])
 
 
-def _to_box(turn: tuple[float, float, float]) -> Floats:
-    """The rotation matrix (3, 3) from the world into a box turned by angles about X, Y, Z in the order "YXZ"."""
-    (sx, sy, sz), (cx, cy, cz) = np.sin(turn).tolist(), np.cos(turn).tolist()
-    about_x = np.array([[1.0, 0.0, 0.0], [0.0, cx, -sx], [0.0, sx, cx]])
-    about_y = np.array([[cy, 0.0, sy], [0.0, 1.0, 0.0], [-sy, 0.0, cy]])
-    about_z = np.array([[cz, -sz, 0.0], [sz, cz, 0.0], [0.0, 0.0, 1.0]])
-    to_box: Floats = (about_y @ about_x @ about_z).T
-    return to_box
+def _to_box(turn: Vector) -> tuple[float, ...]:
+    """The rotation matrix (9,) from the world into a box turned by angles about X, Y, Z in the order "YXZ", by rows."""
+    (sx, sy, sz), (cx, cy, cz) = map(math.sin, turn), map(math.cos, turn)
+    return (
+        cy * cz + sy * sx * sz, cx * sz, cy * sx * sz - sy * cz,
+        sy * sx * cz - cy * sz, cx * cz, sy * sz + cy * sx * cz,
+        sy * cx, -sx, cy * cx,
+    )  # fmt: skip
 
 
+@by_reference
 class Keepout(NamedTuple):
     """What a pushed box has to keep away from."""
 
-    certificate: BodyRows
-    stances: BodyRows
+    certificate: Pieces
+    stances: Pieces
     margin: float  # metres from the certificate's rows
     leg_room: float  # metres from the stances
 
-    def slack(self, box: Floats) -> float:
-        """How much nearer a box (15,) may come, metres."""
-        return min(self.certificate.gap(box) - self.margin, self.stances.gap(box) - self.leg_room)
 
-    def pushed(self, box: Floats, push: Floats, done: float, most: float) -> float | None:
-        """How far in all the box can be pushed, from `done` metres on; None if not at all, or farther than `most`.
+@exact_kernel
+def _slack(keepout: Keepout, box: Floats) -> float:
+    """How much nearer a box (15,) may come, metres."""
+    gaps = least_gap(keepout.certificate, box), least_gap(keepout.stances, box)
+    return min(gaps[0] - keepout.margin, gaps[1] - keepout.leg_room)
 
-        A box that moves as far as it has slack cannot touch, for the slack shrinks at most as fast as the box moves.
-        """
-        begin = box[:3].copy()
-        for _ in range(_PUSHES):
-            box[:3] = begin + done * push
-            slack = self.slack(box) - _NEAR
-            if slack < _NEAR:
-                break
-            done += slack
-            if done > most:
-                break
-        box[:3] = begin
-        return None if done > most or done <= 0.0 else done
+
+@exact_kernel
+def pushed(keepout: Keepout, box: Floats, push: Floats, done: float, most: float) -> float:
+    """How far in all a box can be pushed, from `done` metres on; 0 if not at all, or farther than `most`.
+
+    A box that moves as far as it has slack cannot touch, for the slack shrinks at most as fast as the box moves.
+    """
+    moved = box.copy()
+    for _ in range(_PUSHES):
+        moved[:3] = box[:3] + done * push
+        slack = _slack(keepout, moved) - _NEAR
+        if slack < _NEAR:
+            break
+        done += slack
+        if done > most:
+            return 0.0
+    return done
 
 
 @dataclass(frozen=True, eq=False)
 class Surroundings:
     """What the obstacles of one passage have to mind."""
 
-    line: CourseLine
+    spot: Spot  # the middle of the passage
     rough: Keepout  # some of the rows of `fine`: finds quickly what will never do
     fine: Keepout
-    natural: list[BodyRows]  # the natural walk, once for each of eight phases in which it may come
+    natural: list[Pieces]  # the natural walk, once for each of eight phases in which it may come
     scale: float  # of the body, for obstacles of its size
 
     def touched(self, box: Floats) -> bool:
         """Whether every one of the natural walks runs into the box."""
-        return all(rows.gap(box) < -_TOUCHES * min(self.scale, 1.0) for rows in self.natural)
+        deep = -_TOUCHES * min(self.scale, 1.0)
+        return all(least_gap(walk, box) < deep for walk in self.natural)
 
 
 def surroundings(
@@ -105,10 +115,11 @@ def surroundings(
     """What matters near a passage."""
     first, last = passage.begin - _REACH, passage.end + _REACH
     leg_room = _LEG_ROOM * min(body.scale, 1.0)
-    fine = Keepout(certificate.between(first, last), stances.between(first - _SIGHT, last), margin, leg_room)
-    rough = Keepout(fine.certificate.every(_ROUGHLY), fine.stances.every(3), margin, leg_room)
+    certificate, stances = certificate.between(first, last), stances.between(first - _SIGHT, last)
+    fine = Keepout(certificate.pieces, stances.pieces, margin, leg_room)
+    rough = Keepout(certificate.every(_ROUGHLY).pieces, stances.every(3).pieces, margin, leg_room)
     natural = body.natural_walks(line, max(0.0, passage.begin - _BESIDE), passage.end + _BESIDE)
-    return Surroundings(line, rough, fine, natural, body.scale)
+    return Surroundings(line.spot(passage.middle), rough, fine, [walk.pieces for walk in natural], body.scale)
 
 
 def fill_passage(draw: Draw, level: Level, passage: Passage, around: Surroundings) -> list[Placed] | None:
@@ -149,22 +160,21 @@ def _holds(box: Floats, point: Floats) -> bool:
 
 def _pushed(proposal: Proposal, around: Surroundings) -> Placed | None:
     """The obstacle where it can be pushed no further; None if it touches the certificate or misses the natural walk."""
-    heading = round(float(around.line.heading(proposal.way)), GRAIN)
+    heading = round(around.spot.heading, GRAIN)
     turn = (proposal.turn[0], round(proposal.turn[1] + heading, GRAIN), proposal.turn[2])
-    ends = np.stack([np.asarray(proposal.begin), np.add(proposal.begin, proposal.push)])
-    begin, end = around.line.local(proposal.way, ends)
-    push = end - begin
-    box = Placed(proposal.name, (0.0, 0.0, 0.0), turn, proposal.size).row()
-    box[:3] = begin
+    end = [start + way for start, way in zip(proposal.begin, proposal.push, strict=True)]
+    box = Placed(proposal.name, around.spot.world(*proposal.begin), turn, proposal.size).row()
+    begin = box[:3].copy()
+    push = np.array(around.spot.world(*end)) - begin
     most = _way_to_line(proposal, around.scale)
-    farthest = around.rough.pushed(box, push, 0.0, most)
-    if farthest is None or not around.touched(_moved(box, farthest * push)):
+    farthest = pushed(around.rough, box, push, 0.0, most)
+    if farthest <= 0.0 or not around.touched(_moved(box, farthest * push)):
         return None
-    done = around.fine.pushed(box, push, max(0.0, farthest - _ROUGH), most)
-    if done is None:
+    done = pushed(around.fine, box, push, max(0.0, farthest - _ROUGH), most)
+    if done <= 0.0:
         return None
     box[:3] = np.round(begin + done * push, GRAIN)
-    if around.fine.slack(box) < 0.0 or not around.touched(box):
+    if _slack(around.fine, box) < 0.0 or not around.touched(box):
         return None
     x, y, z = box[:3].tolist()
     return Placed(proposal.name, (x, y, z), turn, proposal.size)
