@@ -58,24 +58,24 @@ class SweptBody:
         segments = posture_capsules(self._model, proof.configurations, proof.roots).astype(np.float64)
         radii = self._radii[:, None] + _half_moves(segments)
         heights = pelvis_frames(self._model, proof.roots)[0][:, 1]
-        upper, sizes = segments[self._upper], radii[self._upper]
+        upper = segments[self._upper]
         variants = [_raised(upper, height - heights) for height in (self._standing, self._lowest)]
         if not line.straight:
             variants += [_turned(upper, proof.roots, angle) for angle in (-STEERING, STEERING)]
-        return joined(rows_of(segments, radii, proof.way), *(rows_of(poses, sizes, proof.way) for poses in variants))
+        sizes = [radii] + [radii[self._upper]] * len(variants)
+        return rows_of(np.concatenate([segments, *variants]), np.concatenate(sizes), proof.way)
 
     def natural_walks(self, line: CourseLine, first: float, last: float) -> list[BodyRows]:
         """The upper body of the natural walk on a part of the way, once for each of eight phases."""
         way = np.arange(first, last, _SPACING)
-        strides = phase_rate(WALK_SPEED, 0.0, 0.0) / WALK_SPEED
-        return [self._natural_walk(line, way, offset + strides * way) for offset in _OFFSETS]
-
-    def _natural_walk(self, line: CourseLine, way: Floats, phases: Floats) -> BodyRows:
-        states = walk_along(line, way, WALK_SPEED, phases)
-        uppers = followed(natural_walk()(RootPath(0.0, 1.0, states)))
-        q = np.concatenate([states[:, :3], uppers], axis=1)
-        segments = posture_capsules(self._model, q, states)[self._upper]
-        return rows_of(segments, self._radii[self._upper], way)
+        walk, strides = walk_along(line, way, WALK_SPEED, 0.0), phase_rate(WALK_SPEED, 0.0, 0.0) / WALK_SPEED
+        walks = np.tile(walk, (len(_OFFSETS), 1, 1))
+        walks[:, :, 6] = _OFFSETS[:, None] + strides * way
+        goals = [natural_walk()(RootPath(0.0, 1.0, states)) for states in walks]
+        states = walks.reshape(-1, walks.shape[2])
+        q = np.concatenate([states[:, :3], followed(np.concatenate(goals))], axis=1)
+        segments = np.split(posture_capsules(self._model, q, states)[self._upper], len(walks), axis=2)
+        return [rows_of(capsules, self._radii[self._upper], way) for capsules in segments]
 
     def stances(self, line: CourseLine) -> BodyRows:
         """Upright capsules as broad as walking legs and pelvis, along the line.
