@@ -25,6 +25,7 @@ from elbowroom.experiment.gauntlet.sweep import STEERING
 from elbowroom.experiment.gauntlet.tasks import CourseTask, result_of
 from elbowroom.experiment.gauntlet.trial import JudgeFigures, TrialResult, controller_on, walk_course
 from elbowroom.experiment.gauntlet.trial_settings import TrialSettings
+from elbowroom.experiment.gauntlet.user import CourseUser
 from elbowroom.experiment.parallel import Processes
 from elbowroom.planning.command import Command
 from elbowroom.planning.root.plan import RootPlanKind
@@ -184,6 +185,18 @@ def test_arms_pass_thin_boards_that_hide_between_two_key_times() -> None:
     result = walk_course(controller_on(stock()[0], made, TrialSettings()), made)
     assert result.stuck_times == 0
     assert result.touching_frames == 0
+
+
+def test_a_user_steers_by_the_line_s_own_points_and_headings() -> None:
+    line, rng = course(3, 5).line, np.random.default_rng(6)
+    user, around = CourseUser(line, rng), 0.0
+    for way in np.arange(0.0, line.length, 0.02):
+        x, z = (line.points(way) + rng.normal(0.0, 0.1, 2)).tolist()
+        around = line.nearest(x, z, around)
+        beside = line.points(around) - (x, z)
+        heading, ahead = line.heading([around, around + 0.3])
+        pull = np.clip(-2.0 * (beside[0] * np.cos(heading) - beside[1] * np.sin(heading)), -0.5, 0.5)
+        assert user.command(RootState(x, z), False, 1 / 60) == Command(forward=1.0, direction=ahead - pull)
 
 
 def test_who_walks_a_course_by_its_name_follows_its_line() -> None:

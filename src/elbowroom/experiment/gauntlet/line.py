@@ -62,29 +62,31 @@ class CourseLine:
         return total
 
     @cached_property
-    def _table(self) -> tuple[Floats, Floats]:
-        """The way (M,) and the points (M, 2) of the line, integrated with the midpoint rule."""
+    def table(self) -> tuple[Floats, Floats, Floats]:
+        """The way and the points' x and z (M,) of the line, integrated with the midpoint rule."""
         first = -_BEFORE_AND_AFTER
         count = round((self.length + 2.0 * _BEFORE_AND_AFTER) / _STEP)
         middles = self.heading(first + _STEP * (np.arange(count) + 0.5))
-        steps = _STEP * np.stack([np.sin(middles), np.cos(middles)], axis=1)
-        points = np.concatenate([np.zeros((1, 2)), np.cumsum(steps, axis=0)])
-        points -= points[round(_BEFORE_AND_AFTER / _STEP)]
+        x, z = (np.concatenate([[0.0], np.cumsum(_STEP * along)]) for along in (np.sin(middles), np.cos(middles)))
+        origin = round(_BEFORE_AND_AFTER / _STEP)
         way: Floats = first + _STEP * np.arange(count + 1, dtype=np.float64)
-        return way, points
+        return way, x - x[origin], z - z[origin]
 
     def points(self, s: ArrayLike) -> Floats:
         """Points (..., 2), x and z."""
-        way, points = self._table
-        place = np.asarray(s, np.float64)
-        return np.stack([np.interp(place, way, points[:, 0]), np.interp(place, way, points[:, 1])], axis=-1)
+        (way, x, z), place = self.table, np.asarray(s, np.float64)
+        return np.stack([np.interp(place, way, x), np.interp(place, way, z)], axis=-1)
 
     def nearest(self, x: float, z: float, around: float, reach: float = 1.0) -> float:
         """The way `s` of the point of the line nearest to (x, z), looked for within `reach` of `around`."""
-        way, points = self._table
-        first, last = np.searchsorted(way, [around - reach, around + reach])
-        part = slice(int(first), max(int(last), int(first) + 1))
-        return float(way[part][np.argmin(np.hypot(points[part, 0] - x, points[part, 1] - z))])
+        return float(self.table[0][self.place_nearest(x, z, around, reach)])
+
+    def place_nearest(self, x: float, z: float, around: float, reach: float = 1.0) -> int:
+        """The place of that point in the table."""
+        way, xs, zs = self.table
+        first, last = way.searchsorted((around - reach, around + reach)).tolist()
+        part = slice(first, max(last, first + 1))
+        return int(first + np.hypot(xs[part] - x, zs[part] - z).argmin())
 
     def spot(self, s: float) -> "Spot":
         """The line's point at `s` as a frame."""

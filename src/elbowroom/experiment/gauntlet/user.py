@@ -18,15 +18,18 @@ class CourseUser:
     def __init__(self, line: CourseLine, rng: np.random.Generator) -> None:
         self._line = line
         self._walker = ScriptedUser(rng)
-        self._way = 0.0
+        self._way, self._x, self._z = line.table
+        self._headings, self._ahead = line.heading(self._way), line.heading(self._way + _LEAD)
+        self._around = 0.0  # metres along the line
 
     def command(self, root: RootState, stuck: bool, dt: float) -> Command:
         """The command for the next `dt` seconds, where the avatar stands at `root`."""
         wish = self._walker.command(stuck, dt)
         if wish != FORWARD or self._line.straight:
             return wish
-        self._way = self._line.nearest(root.x, root.z, self._way)
-        point, (heading, ahead) = self._line.points(self._way), self._line.heading([self._way, self._way + _LEAD])
-        beside = (root.x - point[0]) * np.cos(heading) - (root.z - point[1]) * np.sin(heading)
-        pull = float(np.clip(_PULL * beside, -_MOST, _MOST))
-        return Command(forward=1.0, direction=float(ahead) - pull)
+        here = self._line.place_nearest(root.x, root.z, self._around)
+        self._around = float(self._way[here])
+        heading = self._headings[here]
+        beside = (root.x - self._x[here]) * np.cos(heading) - (root.z - self._z[here]) * np.sin(heading)
+        pull = min(max(_PULL * float(beside), -_MOST), _MOST)
+        return Command(forward=1.0, direction=float(self._ahead[here]) - pull)
