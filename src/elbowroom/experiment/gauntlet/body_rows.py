@@ -54,7 +54,7 @@ class BodyRows:
 
         A box is its centre, the rotation matrix from the world to its axes row by row, and half its sizes.
         """
-        return float(least_gap(self.pieces, box))
+        return float(least_gap(self.pieces, box, np.inf))
 
     @cached_property
     def pieces(self) -> Pieces:
@@ -76,12 +76,12 @@ def joined(*parts: BodyRows) -> BodyRows:
 
 
 @exact_kernel
-def least_gap(rows: Pieces, box: Floats) -> float:
-    """The least clearance of any row from a box (15,).
+def least_gap(rows: Pieces, box: Floats, best: float) -> float:
+    """The least clearance of any row from a box (15,), or the `best` of others where none has less.
 
     The piece that may be nearest is looked at first; pieces and rows that cannot be nearer than what was found are not.
     """
-    best, least, axis = np.inf, _least_of_pieces(rows.around, box), np.empty((2, 3))
+    least, axis = _least_of_pieces(rows.around, box), np.empty((2, 3))
     if len(least) > 0:
         best = _gap_of_piece(rows, int(np.argmin(least)), box, best, axis)
     for piece in range(len(least)):

@@ -30,6 +30,7 @@ _TOUCHES = 0.005  # metres that the natural walk must get into an obstacle
 _PROPOSALS = 60  # for one passage
 _PUSHES = 30
 _NEAR = 1e-3  # metres: pushing ends at such a slack, which rounding may use up
+_ROUNDING = 1e-9  # metres: more than a sum of distances is wrong by
 _HIPS = 0.9  # metres above the ground of a body of usual size: what comes from above goes little lower
 _PAST = 0.25  # metres: what is pushed this far past the line has missed the body
 
@@ -71,8 +72,8 @@ class Keepout(NamedTuple):
 @exact_kernel
 def _slack(keepout: Keepout, box: Floats) -> float:
     """How much nearer a box (15,) may come, metres."""
-    gaps = least_gap(keepout.certificate, box), least_gap(keepout.stances, box)
-    return min(gaps[0] - keepout.margin, gaps[1] - keepout.leg_room)
+    slack = least_gap(keepout.certificate, box, np.inf) - keepout.margin
+    return min(slack, least_gap(keepout.stances, box, slack + keepout.leg_room + _ROUNDING) - keepout.leg_room)
 
 
 @exact_kernel
@@ -106,7 +107,7 @@ class Surroundings:
     def touched(self, box: Floats) -> bool:
         """Whether every one of the natural walks runs into the box."""
         deep = -_TOUCHES * min(self.scale, 1.0)
-        return all(least_gap(walk, box) < deep for walk in self.natural)
+        return all(least_gap(walk, box, 0.0) < deep for walk in self.natural)
 
 
 def surroundings(
