@@ -11,10 +11,13 @@ from elbowroom.experiment.gauntlet.body_rows import BodyRows, joined, rows_of
 from elbowroom.experiment.gauntlet.certificate import Certificate
 from elbowroom.experiment.gauntlet.line import CourseLine, walk_along
 from elbowroom.experiment.gauntlet.speeds import WALK_SPEED
+from elbowroom.jit import exact_kernel
 from elbowroom.planning.goal import natural_walk
 from elbowroom.planning.root.path import RootPath
 
 Floats = NDArray[np.float64]
+Segments = NDArray[np.float32]
+Indices = NDArray[np.int64]
 
 STEERING = 0.06  # radians by which the heading may differ from that of a line that turns
 _BEND = 2e-4  # metres: more than the path within a sample interval differs from its chord
@@ -39,7 +42,7 @@ class SweptBody:
         self.scale = 1.0 if _ALIKE[0] <= scale <= _ALIKE[1] else round(scale, 2)
         self._model = body_model(humanoid)
         self._radii = humanoid.capsules.radii
-        self._upper = np.array([group is not DofGroup.ROOT for group in humanoid.capsules.groups])
+        self._upper = np.flatnonzero([group is not DofGroup.ROOT for group in humanoid.capsules.groups])
         stride = np.zeros((_PHASES, 7))
         stride[:, 3], stride[:, 6] = WALK_SPEED, np.arange(_PHASES) / _PHASES
         self._lowest = float(pelvis_frames(self._model, stride)[0][:, 1].min())
@@ -55,15 +58,14 @@ class SweptBody:
         Radii have grown by half the way that a capsule moves to the next sample: who keeps a distance from the rows
         keeps it between the samples.
         """
-        segments = posture_capsules(self._model, proof.configurations, proof.roots).astype(np.float64)
-        radii = self._radii[:, None] + _half_moves(segments)
+        segments = posture_capsules(self._model, proof.configurations, proof.roots)
         heights = pelvis_frames(self._model, proof.roots)[0][:, 1]
-        upper = segments[self._upper]
-        variants = [_raised(upper, height - heights) for height in (self._standing, self._lowest)]
-        if not line.straight:
-            variants += [_turned(upper, proof.roots, angle) for angle in (-STEERING, STEERING)]
-        sizes = [radii] + [radii[self._upper]] * len(variants)
-        return rows_of(np.concatenate([segments, *variants]), np.concatenate(sizes), proof.way)
+        lifts = np.stack([self._standing - heights, self._lowest - heights])
+        angles = np.array([] if line.straight else [-STEERING, STEERING])
+        axes = _with_variants(segments, self._upper, proof.roots, lifts, np.sin(angles), np.cos(angles))
+        radii = self._radii[:, None] + _half_moves(segments.astype(np.float64))
+        sizes = [radii] + [radii[self._upper]] * (len(lifts) + len(angles))
+        return BodyRows(axes.reshape(-1, 6), np.concatenate(sizes).ravel(), np.tile(proof.way, len(axes)))
 
     def natural_walks(self, line: CourseLine, first: float, last: float) -> list[BodyRows]:
         """The upper body of the natural walk on a part of the way, once for each of eight phases."""
@@ -111,18 +113,33 @@ def _half_moves(segments: Floats) -> Floats:
     return halves
 
 
-def _raised(segments: Floats, heights: Floats) -> Floats:
-    """Capsules (C, 6, N) lifted by heights (N,)."""
-    raised = segments.copy()
-    raised[:, [1, 4]] += heights
-    return raised
+@exact_kernel
+def _with_variants(
+    segments: Segments, upper: Indices, roots: Floats, lifts: Floats, sines: Floats, cosines: Floats
+) -> Floats:
+    """Capsules (C, 6, N) as (C + U (V + W), N, 6): as they are, then the upper body, at indices (U,), in variants.
 
-
-def _turned(segments: Floats, roots: Floats, angle: float) -> Floats:
-    """Capsules (C, 6, N) turned to the left about the upright axis through their root states (N, 7)."""
-    turned = segments.copy()
-    sine, cosine = np.sin(angle), np.cos(angle)
-    for x, z in ((0, 2), (3, 5)):
-        dx, dz = segments[:, x] - roots[:, 0], segments[:, z] - roots[:, 1]
-        turned[:, x], turned[:, z] = roots[:, 0] + cosine * dx + sine * dz, roots[:, 1] + cosine * dz - sine * dx
-    return turned
+    It is lifted by heights (V, N), then turned to the left by W angles about the upright axis through roots (N, 7).
+    """
+    row, count = segments.shape[0], segments.shape[2]
+    axes = np.empty((row + len(upper) * (len(lifts) + len(sines)), count, 6))
+    for c in range(row):
+        axes[c] = segments[c].T
+    for lift in lifts:
+        for c in upper:
+            axes[row] = axes[c]
+            for n in range(count):
+                axes[row, n, 1] += lift[n]
+                axes[row, n, 4] += lift[n]
+            row += 1
+    for turn in range(len(sines)):
+        sine, cosine = sines[turn], cosines[turn]
+        for c in upper:
+            axes[row] = axes[c]
+            for n in range(count):
+                x, z = roots[n, 0], roots[n, 1]
+                for k in (0, 3):
+                    dx, dz = axes[c, n, k] - x, axes[c, n, k + 2] - z
+                    axes[row, n, k], axes[row, n, k + 2] = x + cosine * dx + sine * dz, z + cosine * dz - sine * dx
+            row += 1
+    return axes
