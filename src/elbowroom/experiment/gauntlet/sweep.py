@@ -63,7 +63,7 @@ class SweptBody:
         lifts = np.stack([self._standing - heights, self._lowest - heights])
         angles = np.array([] if line.straight else [-STEERING, STEERING])
         axes = _with_variants(segments, self._upper, proof.roots, lifts, np.sin(angles), np.cos(angles))
-        radii = self._radii[:, None] + _half_moves(segments.astype(np.float64))
+        radii = self._radii[:, None] + _half_moves(segments)
         sizes = [radii] + [radii[self._upper]] * (len(lifts) + len(angles))
         return BodyRows(axes.reshape(-1, 6), np.concatenate(sizes).ravel(), np.tile(proof.way, len(axes)))
 
@@ -104,12 +104,21 @@ class SweptBody:
         return BodyRows(axes, np.full(len(places), self._breadth), way)
 
 
-def _half_moves(segments: Floats) -> Floats:
+@exact_kernel
+def _half_moves(segments: Segments) -> Floats:
     """Half the way (C, N) of each capsule's faster end to the neighbouring samples, for capsules (C, 6, N)."""
-    steps = np.diff(segments.reshape(len(segments), 2, 3, -1), axis=3)
-    moves = np.zeros((segments.shape[0], segments.shape[2] + 1))
-    moves[:, 1:-1] = np.sqrt((steps**2).sum(axis=2)).max(axis=1)
-    halves: Floats = 0.5 * np.maximum(moves[:, :-1], moves[:, 1:]) + _BEND
+    moves = np.zeros((segments.shape[0], segments.shape[2]))
+    for c in range(segments.shape[0]):
+        for n in range(segments.shape[2] - 1):
+            square = 0.0
+            for k in (0, 3):
+                x = np.float64(segments[c, k, n + 1]) - np.float64(segments[c, k, n])
+                y = np.float64(segments[c, k + 1, n + 1]) - np.float64(segments[c, k + 1, n])
+                z = np.float64(segments[c, k + 2, n + 1]) - np.float64(segments[c, k + 2, n])
+                square = max(square, x * x + y * y + z * z)
+            moves[c, n + 1] = np.sqrt(square)
+            moves[c, n] = max(moves[c, n], moves[c, n + 1])
+    halves: Floats = 0.5 * moves + _BEND
     return halves
 
 
