@@ -79,11 +79,9 @@ def joined(*parts: BodyRows) -> BodyRows:
 def least_gap(rows: Pieces, box: Floats, best: float) -> float:
     """The least clearance of any row from a box (15,), or the `best` of others where none has less.
 
-    The piece that may be nearest is looked at first; pieces and rows that cannot be nearer than what was found are not.
+    Pieces and rows that cannot be nearer than what was found are not looked at.
     """
     least, axis = _least_of_pieces(rows.around, box), np.empty((2, 3))
-    if len(least) > 0:
-        best = _gap_of_piece(rows, int(np.argmin(least)), box, best, axis)
     for piece in range(len(least)):
         if least[piece] < best:
             best = _gap_of_piece(rows, piece, box, best, axis)
@@ -105,7 +103,7 @@ def _least_of_pieces(around: Floats, box: Floats) -> Floats:
     return least
 
 
-@inner_exact_kernel
+@helper
 def _gap_of_piece(rows: Pieces, piece: int, box: Floats, best: float, axis: Floats) -> float:
     """The least clearance of a piece's rows, or the `best` of others; `axis` is scratch (2, 3)."""
     axes, radii, p, d, half = rows.axes, rows.radii, axis[0], axis[1], box[12:]
@@ -148,7 +146,9 @@ def _pieces(axes: Floats, radii: Floats, way: Floats) -> tuple[Indices, Floats]:
             for i in range(first, last):
                 low, high = min(low, axes[i, k], axes[i, k + 3]), max(high, axes[i, k], axes[i, k + 3])
             around[k, piece], around[k + 3, piece] = 0.5 * (low + high), 0.5 * (high - low)
-        around[6, piece] = radii[first:last].max()
+        around[6, piece] = radii[first]
+        for i in range(first, last):
+            around[6, piece] = max(around[6, piece], radii[i])
     return begins, around
 
 

@@ -68,12 +68,10 @@ class Keepout(NamedTuple):
     margin: float  # metres from the certificate's rows
     leg_room: float  # metres from the stances
 
-
-@exact_kernel
-def _slack(keepout: Keepout, box: Floats) -> float:
-    """How much nearer a box (15,) may come, metres."""
-    slack = least_gap(keepout.certificate, box, np.inf) - keepout.margin
-    return min(slack, least_gap(keepout.stances, box, slack + keepout.leg_room + _ROUNDING) - keepout.leg_room)
+    def free(self, box: Floats) -> bool:
+        """Whether a box (15,) keeps away from it all."""
+        far = least_gap(self.certificate, box, np.inf) >= self.margin
+        return far and least_gap(self.stances, box, np.inf) >= self.leg_room
 
 
 @exact_kernel
@@ -82,10 +80,12 @@ def pushed(keepout: Keepout, box: Floats, push: Floats, done: float, most: float
 
     A box that moves as far as it has slack cannot touch, for the slack shrinks at most as fast as the box moves.
     """
-    moved = box.copy()
+    moved, margin, leg_room = box.copy(), keepout.margin, keepout.leg_room
     for _ in range(_PUSHES):
-        moved[:3] = box[:3] + done * push
-        slack = _slack(keepout, moved) - _NEAR
+        for k in range(3):
+            moved[k] = box[k] + done * push[k]
+        slack = least_gap(keepout.certificate, moved, np.inf) - margin
+        slack = min(slack, least_gap(keepout.stances, moved, slack + leg_room + _ROUNDING) - leg_room) - _NEAR
         if slack < _NEAR:
             break
         done += slack
@@ -175,7 +175,7 @@ def _pushed(proposal: Proposal, around: Surroundings) -> Placed | None:
     if done <= 0.0:
         return None
     box[:3] = np.round(begin + done * push, GRAIN)
-    if _slack(around.fine, box) < 0.0 or not around.touched(box):
+    if not around.fine.free(box) or not around.touched(box):
         return None
     x, y, z = box[:3].tolist()
     return Placed(proposal.name, (x, y, z), turn, proposal.size)

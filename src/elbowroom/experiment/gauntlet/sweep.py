@@ -130,25 +130,22 @@ def _with_variants(
 
     It is lifted by heights (V, N), then turned to the left by W angles about the upright axis through roots (N, 7).
     """
-    row, count = segments.shape[0], segments.shape[2]
-    axes = np.empty((row + len(upper) * (len(lifts) + len(sines)), count, 6))
-    for c in range(row):
-        axes[c] = segments[c].T
-    for lift in lifts:
-        for c in upper:
-            axes[row] = axes[c]
-            for n in range(count):
-                axes[row, n, 1] += lift[n]
-                axes[row, n, 4] += lift[n]
-            row += 1
-    for turn in range(len(sines)):
-        sine, cosine = sines[turn], cosines[turn]
-        for c in upper:
-            axes[row] = axes[c]
-            for n in range(count):
-                x, z = roots[n, 0], roots[n, 1]
-                for k in (0, 3):
-                    dx, dz = axes[c, n, k] - x, axes[c, n, k + 2] - z
-                    axes[row, n, k], axes[row, n, k + 2] = x + cosine * dx + sine * dz, z + cosine * dz - sine * dx
-            row += 1
+    plain, moved, count = segments.shape[0], len(upper), segments.shape[2]
+    axes = np.empty((plain + moved * (len(lifts) + len(sines)), count, 6))
+    for c in range(plain):
+        for n in range(count):
+            for k in range(6):
+                axes[c, n, k] = segments[c, k, n]
+    for i in range(moved):
+        for n in range(count):
+            x, z, own = roots[n, 0], roots[n, 1], axes[upper[i], n]
+            for k in (0, 3):
+                dx, dz = own[k] - x, own[k + 2] - z
+                for lift in range(len(lifts)):
+                    end = axes[plain + lift * moved + i, n, k : k + 3]
+                    end[0], end[1], end[2] = own[k], own[k + 1] + lifts[lift, n], own[k + 2]
+                for turn in range(len(sines)):
+                    end = axes[plain + (len(lifts) + turn) * moved + i, n, k : k + 3]
+                    sine, cosine = sines[turn], cosines[turn]
+                    end[0], end[1], end[2] = x + cosine * dx + sine * dz, own[k + 1], z + cosine * dz - sine * dx
     return axes
