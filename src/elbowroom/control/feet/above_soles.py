@@ -34,7 +34,8 @@ class AboveSoles:
         self.body = ShownBody(model.whole, model.body.radii, self._sides(model), lifted)  # for kernels
         self._of_legs = self.body.sides[model.roots.indices]
         shins = np.isin(model.body.joints, model.figure.legs[:, 1:])
-        self.carried = np.flatnonzero(~(shins & (not self.footing.plain)))  # capsules that count for how hips live
+        # The capsules that count for how hips live.
+        self.carried: list[int] = np.flatnonzero(~(shins & (not self.footing.plain))).tolist()
 
     def floors(self, root: Floats) -> Floats:
         """What both soles keep above (2,) in a root state (ROOT_STATE,) that stands."""

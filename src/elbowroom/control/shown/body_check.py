@@ -64,6 +64,7 @@ class _Pose(NamedTuple):
     axes: Floats32  # (C, 6, 1) the capsules' axes as seen from the root's place
     floors: Floats  # (2,) heights that the soles keep above, see `AboveSoles.floors`
     gaps: Floats32  # (C,) how far each capsule is from what stands; of the nearest that, of others at least so much
+    rooms: list[float]  # the same numbers
 
 
 class BodyCheck:
@@ -83,8 +84,10 @@ class BodyCheck:
         self._moving, self._loose = Obstacles(moving=moving), Obstacles()
         self._around = self._that_can_move()
         self._empty = not len(scene.obstacles)
-        self._above = np.setdiff1d(np.arange(len(self._radii)), self.model.roots.indices)
-        self._about_knees = np.flatnonzero(np.isin(self.model.body.joints, self.model.figure.legs[:, :2]))
+        self._nowhere = np.full(len(self._radii), np.inf, np.float32)  # the gaps where nothing stands
+        self._legs: list[int] = self.model.roots.indices.tolist()  # the numbers of their capsules
+        self._above = [number for number in range(len(self._radii)) if number not in self._legs]
+        self._knees: list[int] = np.flatnonzero(np.isin(self.model.body.joints, self.model.figure.legs[:, :2])).tolist()
         self._poses: tuple[_Pose, ...] = ()  # latest first
         self.others: Sequence[Neighbour] = ()  # other avatars, as they say that they will move
         self.told: Neighbour | None = None  # what they know of this one
@@ -143,10 +146,9 @@ class BodyCheck:
     def room_of_legs(self, root: Floats, upper: Floats, time: float, axes: Floats32 | None = None) -> float:
         """Metres from the legs to the nearest obstacle, as `shown_clearance` of the whole body.
 
-        `axes` are those of the pose, where they are known.
+        `axes` are those of the pose, where they are known; they are remembered where nothing stands too.
         """
-        legs = self.model.roots.indices
-        return np.inf if self.alone else self._least(self._pose(root, upper, axes), time, -np.inf, legs)
+        return self._least(self._pose(root, upper, axes), time, -np.inf, self._legs)
 
     def room_along(self, roots: Floats, upper: Floats, farthest: float) -> float:
         """Metres from the legs to what stands about feet, the least of root states (N, WITH_FEET); `farthest` at most.
@@ -165,11 +167,11 @@ class BodyCheck:
 
     def room_above(self, root: Floats, upper: Floats) -> float:
         """Metres from all that is carried by pelvis and legs to what stands."""
-        return np.inf if self._empty else float(self._pose(root, upper).gaps[self._above].min())
+        return np.inf if self._empty else _least(self._pose(root, upper).rooms, self._above)
 
     def room_about_knees(self, root: Floats, upper: Floats) -> float:
         """Metres from thighs and shins to what stands."""
-        return np.inf if self._empty else float(self._pose(root, upper).gaps[self._about_knees].min())
+        return np.inf if self._empty else _least(self._pose(root, upper).rooms, self._knees)
 
     def room_of_trunk(self, root: Floats, upper: Floats, time: float) -> float:
         """The same of all that is carried by the shins: what feet stand on, and go over, is no nearer for them."""
@@ -200,23 +202,26 @@ class BodyCheck:
         """
         if self.alone:
             return True
-        before, after = (self._pose(root, upper) for root, upper in zip(frames.roots, frames.uppers, strict=True))
-        floors, gaps = np.minimum(before.floors, after.floors), [before.gaps, after.gaps]
+        before, after = self._ends(frames)
+        floors, gaps = np.minimum(before.floors, after.floors), (before.gaps, after.gaps)
         if self.soles.change(before.floors, after.floors):
-            gaps = [self._gaps(pose.axes, pose.root, floors) for pose in (before, after)]
+            gaps = self._gaps(before.axes, before.root, floors), self._gaps(after.axes, after.root, floors)
         if not self.footing.plain and not self._turns_free(frames, floors):
             return False
-        body, standing, ends = self.soles.body, self._standing.about_bodies, np.array(gaps)
-        if not proven_between(body, standing, self._levers, frames.roots, frames.uppers, ends, floors):
+        body, standing = self.soles.body, self._standing.about_bodies
+        if not proven_between(body, standing, self._levers, frames.roots, frames.uppers, gaps, floors):
             return False
         return not self.accompanied or self._free_of_movers(frames, (before, after))
+
+    def _ends(self, frames: Frames) -> tuple[_Pose, _Pose]:
+        (first, last), (begin, end), _ = frames
+        return self._pose(first, begin), self._pose(last, end)
 
     def leaves_room(self, frames: Frames) -> bool:
         """Whether the second frame leaves others the room that they count on; see `others/room_left.py`."""
         if self.told is None or not self.others:
             return True
-        ends = [self._pose(root, upper) for root, upper in zip(frames.roots, frames.uppers, strict=True)]
-        was, shown = (in_world(end.axes, end.root) for end in ends)
+        was, shown = (in_world(end.axes, end.root) for end in self._ends(frames))
         return all(leaves_room(self.told, other, was, shown, frames.times[1]) for other in self.others)
 
     def _free_of_movers(self, frames: Frames, ends: tuple[_Pose, _Pose]) -> bool:
@@ -273,6 +278,8 @@ class BodyCheck:
 
     def _gaps(self, axes: Floats32, root: Floats, floors: Floats) -> Floats32:
         """How far each of the axes (C, 6, 1) about a root's place is from what stands, (C,)."""
+        if self._empty:
+            return self._nowhere
         x, z = root[:2].tolist()
         return gaps_about(self.soles.body, self._standing.about_bodies, axes, x, z, floors, np.inf)
 
@@ -284,7 +291,8 @@ class BodyCheck:
         if axes is None:
             axes = capsules_of(self.soles.body, np.ascontiguousarray(root), np.ascontiguousarray(upper))
         floors = self.soles.floors(root)
-        pose = _Pose(root, upper, axes, floors, self._gaps(axes, root, floors))
+        gaps = self._gaps(axes, root, floors)
+        pose = _Pose(root, upper, axes, floors, gaps, gaps.tolist())
         self._poses = (pose, *self._poses[: _REMEMBERED - 1])
         return pose
 
@@ -293,12 +301,17 @@ class BodyCheck:
         stood: Floats = root if self.soles.footing.plain else self.soles.footing.stood(root[None])[0][0]
         return stood
 
-    def _least(self, pose: _Pose, time: float, others_at: float, parts: Indices | None = None) -> float:
+    def _least(self, pose: _Pose, time: float, others_at: float, parts: list[int] | None = None) -> float:
         """The least clearance of a pose, or of some `parts` of it; from others as they are at a time of theirs."""
+        room = _least(pose.rooms, parts)
+        if not self.accompanied:
+            return room
         some = slice(None) if parts is None else parts
-        found, axes, radii = [float(pose.gaps[some].min())], pose.axes, self._radii
-        if self.accompanied:
-            axes, radii = np.ascontiguousarray(axes[some]), radii[some]
-            found += [around.clearance(axes, radii, pose.root[:2], time) for around in self._around]
-            found += [other.clearance(axes, radii, pose.root, others_at) for other in self.others]
-        return min(found)
+        axes, radii = np.ascontiguousarray(pose.axes[some]), self._radii[some]
+        found = [around.clearance(axes, radii, pose.root[:2], time) for around in self._around]
+        found += [other.clearance(axes, radii, pose.root, others_at) for other in self.others]
+        return min(room, *found)
+
+
+def _least(rooms: list[float], parts: list[int] | None) -> float:
+    return min(rooms) if parts is None else min(map(rooms.__getitem__, parts))

@@ -128,7 +128,7 @@ class Showing:
             return
         posed = before.pose._replace(upper_velocity=np.zeros_like(before.pose.upper))
         clearance = self._clearance_of(posed.root, posed.upper)
-        if self._around.check.accompanied and not self._touches_nothing(posed, clearance):
+        if self._around.check.accompanied and not self._touches_nothing(posed, clearance, self._frames_to(posed)):
             self._retracing.give_up()
             return
         self._retracing.went()
@@ -219,8 +219,6 @@ class Showing:
     def _look(self, root: Floats, upper: Floats, axes: Floats32 | None = None) -> Around:
         """What stands and moves about a body."""
         check = self._around.check
-        if check.alone:
-            return Around(np.inf, lasts=True)
         return Around(check.room_of_legs(root, upper, self._now, axes), not check.accompanied)
 
     def _clearance_of(self, root: Floats, upper: Floats) -> float:
@@ -229,9 +227,10 @@ class Showing:
 
     def _is_free(self, posed: Playback, clearance: float) -> bool:
         """Whether the pose can be shown: neither it nor the way to it touches anything, or is in itself."""
-        return self._touches_nothing(posed, clearance) and self._keeps_out_of_itself(posed)
+        frames = self._frames_to(posed)
+        return self._touches_nothing(posed, clearance, frames) and self._keeps_out_of_itself(frames)
 
-    def _touches_nothing(self, posed: Playback, clearance: float) -> bool:
+    def _touches_nothing(self, posed: Playback, clearance: float, frames: Frames) -> bool:
         """Whether a pose touches nothing that stands or moves about it, nor the way to it from what is shown."""
         check = self._around.check
         if check.restless and self._clearance < 0.0 and clearance >= self._clearance:
@@ -239,19 +238,18 @@ class Showing:
         spare = 0.0 if self.holding.active else min(self._around.spare, self._clearance)
         if clearance < max(spare, 0.0) or not self._leaves_knees_room(posed):
             return False
-        frames = self._frames_to(posed)
         return check.leaves_room(frames) and check.free_between(frames)
 
-    def _keeps_out_of_itself(self, posed: Playback) -> bool:
+    def _keeps_out_of_itself(self, frames: Frames) -> bool:
         """Whether no part of the body comes deeper into another than it may, from the pose that is shown on.
 
         Of planners that see to that.
         """
-        check, shown, own_body = self._around.check, self._pose, self._around.own_body
+        check, own_body = self._around.check, self._around.own_body
         if own_body is None:
             return True
-        axes = check.shown_axes(shown.root, shown.upper), check.shown_axes(posed.root, posed.upper)
-        return own_body.free_between(self._frames_to(posed), axes)
+        (first, last), (begin, end), _ = frames
+        return own_body.free_between(frames, (check.shown_axes(first, begin), check.shown_axes(last, end)))
 
     def _frames_to(self, posed: Playback) -> Frames:
         """What is shown, and the pose that comes next."""

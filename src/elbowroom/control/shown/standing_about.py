@@ -23,6 +23,7 @@ Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
 Indices = NDArray[np.int64]
 Both = tuple[Floats, Floats]
+BothGaps = tuple[Floats32, Floats32]
 
 _ONE = plain(1)  # part of that time at a time
 HALVINGS = plain(9)  # of the time between two frames: the bound on a foot in its stride is many times what it moves
@@ -108,11 +109,11 @@ def gaps_about(
 
 @brief_exact_kernel
 def proven_between(
-    body: ShownBody, standing: Standing, levers: Levers, roots: Both, uppers: Both, gaps: Floats32, floors: Floats
+    body: ShownBody, standing: Standing, levers: Levers, roots: Both, uppers: Both, gaps: BothGaps, floors: Floats
 ) -> bool:
     """Whether each capsule is proven free of what stands, all the way from one pose to another, by `halving`.
 
-    They are told by root states and upper bodies (LOCAL,), with their `gaps` (2, C) above common `floors` (2,). Who has
+    They are told by root states and upper bodies (LOCAL,), with their `gaps` (C,) above common `floors` (2,). Who has
     as much room in between as he can move is free: more than twice that is not told apart.
     """
     first, begin, x, z = roots[0], uppers[0], roots[0][0], roots[0][1]
@@ -121,8 +122,9 @@ def proven_between(
         travel(levers, roots, uppers).reshape((1, len(body.radii))),
         np.empty((1, len(body.radii)), np.float32),
     )
-    near, q = np.empty((1, len(first))), np.zeros((1, DOF))
-    proof, enough = begun(gaps, ways, _ONE, 0.0, HALVINGS), 2.0 * ways.max()
+    near, q, ends = np.empty((1, len(first))), np.zeros((1, DOF)), np.empty((2, len(body.radii)), np.float32)
+    ends[0], ends[1] = gaps
+    proof, enough = begun(ends, ways, _ONE, 0.0, HALVINGS), 2.0 * ways.max()
     while due(proof, parts, shares) > 0:
         near[0] = first + shares[0] * root_way
         q[0, DOF - LOCAL :] = begin + shares[0] * upper_way
