@@ -14,13 +14,12 @@ from elbowroom.body.dof import ARMS, columns_of, limits
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.pose.kinematics import BodyModel, body_model
 from elbowroom.clips.motion_set import MotionSet
-from elbowroom.control.feet.following import BesideLegs, arm_gaps
+from elbowroom.control.feet.following import BesideLegs, Gaps, arm_gaps
 from elbowroom.planning.goal import natural_walk
 from elbowroom.planning.model.self_pairs import self_pairs
 from elbowroom.planning.shared import Shared
 
 Floats = NDArray[np.float64]
-Floats32 = NDArray[np.float32]
 
 _NEAR, _LEAST_GAP = 0.010, 0.004  # metres: an arm that would be nearer makes way, and keeps some millimetres
 _BACK = 0.1  # seconds: time constant with which an arm that has made way comes back
@@ -50,16 +49,16 @@ class ArmsBesideLegs:
         self._most = [float(limits(arm)[_ABDUCTION, 1]) for arm in ARMS]
         self._reach = 1.4 * model.gait.half_leg  # metres from the shoulder to the hand, about
 
-    def apart(self, root: Floats, upper: Floats, known: Floats32 | None = None) -> Floats:
+    def apart(self, root: Floats, upper: Floats, known: Gaps | None = None) -> Floats:
         """The upper body (LOCAL,) with arms that keep clear of the legs under `root` (WITH_FEET or SHOWN,).
 
         What is wanted is a smooth function of the gap, so arms make way as smoothly as legs come near. The gaps as
         `arm_gaps` has them may be `known`.
         """
         both = self._gaps(root, upper) if known is None else known
-        if both[0, 0] >= _NEAR and both[1, 0] >= _NEAR:
+        if min(both) >= _NEAR:
             return upper
-        gaps = both[:, 0].astype(np.float64)
+        gaps = np.array(both)
         return self._spread(root, upper, gaps, _widened(gaps))
 
     def coming_back(self, upper: Floats, planned: Floats, made: Floats, dt: float) -> Floats:
@@ -68,20 +67,22 @@ class ArmsBesideLegs:
         They were spread by what was `made` of what was planned (LOCAL,) `dt` seconds ago, radians, and are now at least
         by so much less of it as they can come back in that time.
         """
-        spread = np.maximum(made[self._columns], 0.0) * math.exp(-dt / _BACK)
-        spread[spread < _UNFELT] = 0.0
-        least = np.minimum(planned[self._columns] + spread, self._most)
-        if spread.max() <= 0.0 or (upper[self._columns] - least).min() >= 0.0:
-            return upper
-        back = upper.copy()
-        back[self._columns] = np.maximum(upper[self._columns], least)
+        back, left = upper, math.exp(-dt / _BACK)
+        for column, most in zip(self._columns, self._most, strict=True):
+            spread = left * float(made[column])
+            least = min(float(planned[column]) + spread, most)
+            if spread >= _UNFELT and upper[column] < least:
+                back = upper.copy() if back is upper else back
+                back[column] = least
         return back
 
-    def barely_apart(self, root: Floats, upper: Floats, known: Floats32 | None = None) -> Floats:
+    def barely_apart(self, root: Floats, upper: Floats, known: Gaps | None = None) -> Floats:
         """The same, no farther than needed: for where something else is in the arms' way."""
         both = self._gaps(root, upper) if known is None else known
-        gaps = both[:, 0].astype(np.float64)
-        return upper if gaps.min() >= 0.0 else self._spread(root, upper, gaps, np.maximum(gaps, _BARELY))
+        if min(both) >= 0.0:
+            return upper
+        gaps = np.array(both)
+        return self._spread(root, upper, gaps, np.maximum(gaps, _BARELY))
 
     def _spread(self, root: Floats, upper: Floats, gaps: Floats, wanted: Floats) -> Floats:
         """The upper body with arms spread until the gaps of both to the legs, (2,) metres, are as wide as `wanted`."""
@@ -95,7 +96,7 @@ class ArmsBesideLegs:
             spread[self._columns] = np.maximum(
                 upper[self._columns], np.minimum(upper[self._columns] + angles, self._most)
             )
-            found = self._gaps(root, spread)[:, 0].astype(np.float64)
+            found = np.array(self._gaps(root, spread))
             opened = np.divide(found - gaps, angles, out=np.full(len(ARMS), self._reach), where=angles > 0.0)
             slopes = np.clip(opened, _LEAST * self._reach, self._reach)
         return spread
@@ -106,9 +107,9 @@ class ArmsBesideLegs:
 
     def room(self, root: Floats, upper: Floats) -> float:
         """How much nearer arms could come to the legs under `root`, metres; negative where one is too deep in them."""
-        return float(self._gaps(root, upper).min())
+        return min(self._gaps(root, upper))
 
-    def _gaps(self, root: Floats, upper: Floats) -> Floats32:
+    def _gaps(self, root: Floats, upper: Floats) -> Gaps:
         return arm_gaps(self._model.whole, np.ascontiguousarray(root), np.ascontiguousarray(upper), self.pairs)
 
 

@@ -25,6 +25,7 @@ from elbowroom.planning.model.footing import Underfoot
 Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
 Indices = NDArray[np.int64]
+Gaps = tuple[float, float]  # metres, of the left and the right arm
 
 _TWIST, _HEAD_TURN = (columns_of(group).start + 1 for group in (DofGroup.WAIST, DofGroup.HEAD))
 _ARMS, _TRUNK = plain(2), plain(1)
@@ -59,18 +60,19 @@ class Followed(NamedTuple):
 
     root: Floats  # (SHOWN,) with feet and carriage
     axes: Floats32  # (C, 6, 1) of its capsules, as seen from the root's place, feet as high as they are held
-    gaps: Floats32  # (2, 1) how much nearer the left and the right arm may come to the legs, metres
+    gaps: Gaps  # how much nearer the left and the right arm may come to the legs
     trunk: float  # how much nearer the trunk may come to them, metres
 
 
 @inner_exact_kernel
-def _arm_gaps(axes: Floats32, pairs: BesideLegs) -> Floats32:
-    """How much nearer the left and the right arm of a body (C, 6, 1) may come to its legs, metres (2, 1)."""
-    return pair_clearances(axes, pairs.first, pairs.second, pairs.kinds, pairs.allowed, _ARMS)
+def _arm_gaps(axes: Floats32, pairs: BesideLegs) -> Gaps:
+    """How much nearer the left and the right arm of a body (C, 6, 1) may come to its legs."""
+    both = pair_clearances(axes, pairs.first, pairs.second, pairs.kinds, pairs.allowed, _ARMS)
+    return float(both[0, 0]), float(both[1, 0])
 
 
 @brief_exact_kernel
-def arm_gaps(body: WholeBody, root: Floats, upper: Floats, pairs: BesideLegs) -> Floats32:
+def arm_gaps(body: WholeBody, root: Floats, upper: Floats, pairs: BesideLegs) -> Gaps:
     """`_arm_gaps` of a body at a root with feet (WITH_FEET or SHOWN,), with an upper body (LOCAL,)."""
     q, here = np.zeros((1, DOF)), root.copy().reshape((1, len(root)))
     q[0, DOF - LOCAL :] = upper
@@ -81,7 +83,7 @@ def arm_gaps(body: WholeBody, root: Floats, upper: Floats, pairs: BesideLegs) ->
 @brief_exact_kernel
 def followed(
     who: Follower, before: Floats, root: Floats, upper: Floats, coming: Floats, dt: float, room: float, how: int
-) -> tuple[Floats, Floats32, Floats32, float]:
+) -> tuple[Floats, Floats32, Gaps, float]:
     """How a root state (7 or more,) with an upper body (LOCAL,) is shown `dt` seconds after `before` (SHOWN,).
 
     As `Followed`. Feet step to where the root is to come, or glide into the walking cycle, `how` says which; that is

@@ -17,7 +17,7 @@ from elbowroom.body.gait.foot_state import standing
 from elbowroom.body.gait.footholds import UNKNOWN, beside, settled
 from elbowroom.body.gait.gliding import gliding
 from elbowroom.body.gait.landing_places import Stepper
-from elbowroom.body.gait.living import body_of, lively, living
+from elbowroom.body.gait.living import body_of, living
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.pose.kinematics import body_model, lower_body
 from elbowroom.body.root import CARRIAGE, RISES, ROOT_STATE, WITH_FEET
@@ -26,14 +26,13 @@ from elbowroom.control.feet.above_soles import AboveSoles
 from elbowroom.control.feet.arms_beside_legs import arms_beside_legs
 from elbowroom.control.feet.feet import Moment
 from elbowroom.control.feet.feet_ahead import glides_ahead, steps_ahead
-from elbowroom.control.feet.following import GLIDES, HOLDS, STEPS, Followed, Follower, followed
-from elbowroom.control.feet.posing import Posing
+from elbowroom.control.feet.following import GLIDES, HOLDS, STEPS, Followed, Follower, Gaps, followed
+from elbowroom.control.feet.posing import NOT_AT_ALL, Posing
 from elbowroom.control.feet.raised import raised
 from elbowroom.control.feet.trunk_over_legs import trunk_over_legs
 from elbowroom.control.key_frame_queue import Playback
 
 Floats = NDArray[np.float64]
-Floats32 = NDArray[np.float32]
 
 _ROOM = 0.10  # metres about the legs in which feet step as they like
 _ASKED = 0.01  # metres: more room about legs is not told apart
@@ -43,7 +42,6 @@ _FOLDED = 0.02  # metres from trunk to thighs, beyond what they may come near: w
 _SAME = 1e-9  # metres and radians
 _STRAIN = 0.3  # half leg lengths that hips come down, beyond the stride, to a foot that waits
 _TWIST, _HEAD_TURN = (columns_of(group).start + 1 for group in (DofGroup.WAIST, DofGroup.HEAD))
-_NOT_AT_ALL = -1.0  # metres of room in which hips are where they were planned at once
 _FARTHER = 0.002  # metres that another way has to keep off more, to be taken for it
 _LONG = 60.0  # seconds in which feet have glided wherever they were planned
 
@@ -90,7 +88,7 @@ class Stepping:
         steps = alive.made(STEPS)
         around = alive.moment.look(steps.root, held.upper, steps.axes)
         roomy = around.room >= _ROOM or self._is_clear(alive.moment, steps, held)
-        stays = list[Playback]()
+        stays: list[Playback] = []
         for it, pose in self._all_ways(alive, (STEPS, GLIDES) if roomy else (GLIDES, STEPS)):
             made_way = pose.upper is not held.upper
             upper = pose.upper if made_way else self._arms.apart(pose.root, pose.upper, it.gaps(pose))
@@ -113,8 +111,9 @@ class Stepping:
         if after.trunk < _FOLDED and self._comes_into_trunk(moment, after.root, posed.upper):
             after = it.made(GLIDES)
         upper = self._arms.apart(after.root, posed.upper, after.gaps)
-        made = moment.shown.upper - moment.meant
-        return Playback(after.root, self._arms.coming_back(upper, posed.upper, made, moment.dt), posed.upper_velocity)
+        if moment.shown.upper is not moment.meant:
+            upper = self._arms.coming_back(upper, posed.upper, moment.shown.upper - moment.meant, moment.dt)
+        return Playback(after.root, upper, posed.upper_velocity)
 
     def under(self, moment: Moment, played: Sequence[tuple[Playback, Floats]]) -> Iterator[tuple[Playback, Floats]]:
         """Poses that could be shown next, each with its stance (3,), on feet that follow on what is shown.
@@ -123,7 +122,8 @@ class Stepping:
         glide to where they were planned, and arms make way for the legs. If that touches, hips are as planned; then
         feet glide and arms go as planned; or feet step, or wait. Last come those with an arm too deep in a leg.
         """
-        in_legs, told = list[tuple[Playback, Floats]](), list[Playback]()
+        in_legs: list[tuple[Playback, Floats]] = []
+        told: list[Playback] = []
         for way, stance, clear in self._ways_under(moment, played):
             if any(way.root is other.root and way.upper is other.upper for other in told):
                 continue
@@ -138,16 +138,15 @@ class Stepping:
         self, moment: Moment, played: Sequence[tuple[Playback, Floats]]
     ) -> Iterator[tuple[Playback, Floats, bool]]:
         """The same, some of them twice, and whether arms are clear of the legs."""
-        still, planned = moment._replace(room=_NOT_AT_ALL), list[tuple[Posing, Floats]]()
-        for posed, stance in played:
-            alive = self._posing(moment, posed)
-            planned.append((self._on_planned_hips(alive), stance))
-            for way in self._off_things(moment, self._made_way(alive, planned[-1][0])):
-                yield way, stance, way.upper is posed.upper or self._arms.are_clear(way.root, way.upper)
+        alive = [(self._posing(moment, posed), stance) for posed, stance in played]
+        for it, stance in alive:
+            for way in self._off_things(moment, self._made_way(it)):
+                yield way, stance, way.upper is it.posed.upper or self._arms.are_clear(way.root, way.upper)
         for how in (GLIDES, STEPS):
-            for it, stance in planned:
-                for way in self._ways(it, how):
+            for it, stance in alive:
+                for way in self._ways(it.on_planned_hips, how):
                     yield way, stance, self._arms.are_clear(way.root, way.upper)
+        still = moment._replace(room=NOT_AT_ALL)
         for posed, stance in played:
             waits = self._made(still._replace(dt=0.0), posed, STEPS).root
             if not self._is_strained(waits, posed.upper):
@@ -156,9 +155,10 @@ class Stepping:
                 for way in (apart, *self._less_apart(waiting)):
                     yield way, stance, self._arms.are_clear(way.root, way.upper)
 
-    def _made_way(self, alive: Posing, still: Posing) -> Iterator[Playback]:
+    def _made_way(self, alive: Posing) -> Iterator[Playback]:
         """How a pose is shown where arms make way for legs, on hips that live and then on those planned: best first."""
         yield self._next(alive)
+        still = alive.on_planned_hips
         if still is not alive:
             yield self._next(still)
         glides, posed = still.made(GLIDES), still.posed
@@ -169,7 +169,7 @@ class Stepping:
 
         Plans keep off what stands; hips that come down to feet, or live, are not where these have them.
         """
-        near = list[tuple[float, Playback]]()
+        near: list[tuple[float, Playback]] = []
         for way in ways:
             room = moment.room_above(way.root, way.upper)
             if room >= MARGIN and not near:
@@ -182,7 +182,7 @@ class Stepping:
                 best = n if room > near[best][0] + _FARTHER else best
             yield near.pop(best)[1]
 
-    def _less_apart(self, pose: Playback, known: Floats32 | None = None) -> Iterator[Playback]:
+    def _less_apart(self, pose: Playback, known: Gaps | None = None) -> Iterator[Playback]:
         """A pose whose arms leave the legs no more room than they must, if they are in them; and as it is."""
         upper = self._arms.barely_apart(pose.root, pose.upper, known)
         if upper is not pose.upper:
@@ -191,15 +191,9 @@ class Stepping:
 
     def _all_ways(self, alive: Posing, order: tuple[int, int]) -> Iterator[tuple[Posing, Playback]]:
         """How a pose can be shown on feet that follow in two ways, on hips that live and then on those planned."""
-        still = self._on_planned_hips(alive)
+        still = alive.on_planned_hips
         for it in (alive,) if still is alive else (alive, still):
             yield from ((it, pose) for how in order for pose in self._ways(it, how))
-
-    def _on_planned_hips(self, alive: Posing) -> Posing:
-        """The same pose with hips where they were planned; the very same, where nothing lives."""
-        if not lively(alive.made(STEPS).root):
-            return alive
-        return self._posing(alive.moment._replace(room=_NOT_AT_ALL), alive.posed)
 
     def _ways(self, it: Posing, how: int) -> Iterator[Playback]:
         """How a pose can be shown on feet that follow in one of the ways: best first.
@@ -237,7 +231,7 @@ class Stepping:
         for root in islice(raised(before, stood, moment.dt), 1, None):
             yield self._made(moment, posed._replace(root=root), GLIDES).root
         at_once = gliding(self._gait, before, stood, _LONG)
-        yield self._alive(moment._replace(room=_NOT_AT_ALL), at_once, posed).root
+        yield self._alive(moment._replace(room=NOT_AT_ALL), at_once, posed).root
 
     def _stood(self, root: Floats) -> Floats:
         """A root state (ROOT_STATE or more,) with what the feet of the walking cycle stand on (ROOT_STATE,)."""
