@@ -98,15 +98,11 @@ class KeyFrameQueue:
 
     def ahead(self) -> Floats:
         """Seconds from now and root states (m, 8) of the key frames that are still to come."""
-        following = self._next()
-        ahead = np.empty((len(self._times) - following, 1 + ROOT_STATE))
-        ahead[:, 0] = self._times[following:] - self.time
-        ahead[:, 1:] = self._roots[following:]
-        return ahead
+        return _coming(self._times, self._roots, self.time)
 
     def _next(self) -> int:
         """The number of the first key frame that is still to come."""
-        return int(self._times.searchsorted(self.time + _SAME_TIME, side="right"))
+        return _first_after(self._times, self.time)
 
     def splice(self, path: RootPath, uppers: Floats, velocity: Floats, velocities: Floats | None = None) -> None:
         """From the start of `path` on, play it with the upper body `uppers` (n+1, LOCAL) at its key times.
@@ -152,6 +148,25 @@ class KeyFrameQueue:
     def at(self, time: float) -> Playback:
         """What the motion has at `time`, played as it was planned; at its end the root still has its velocity."""
         return Playback(*_motion_at(self._times, self._roots, self._uppers, self._velocities, time))
+
+
+@brief_exact_kernel
+def _first_after(times: Floats, time: float) -> int:
+    """The number of the first of increasing times that is later than another."""
+    number = 0
+    while number < len(times) and times[number] <= time + _SAME_TIME:
+        number += 1
+    return number
+
+
+@brief_exact_kernel
+def _coming(times: Floats, roots: Floats, time: float) -> Floats:
+    """The seconds from a time and the roots (m, 8) of key frames that are later."""
+    first = _first_after(times, time)
+    coming = np.empty((len(times) - first, 1 + ROOT_STATE))
+    for n in range(len(coming)):
+        coming[n, 0], coming[n, 1:] = times[first + n] - time, roots[first + n]
+    return coming
 
 
 @brief_exact_kernel

@@ -19,7 +19,7 @@ _TREMOR_SHARE = 0.02  # of shares
 def checked(command: Command) -> Command:
     """The command with its shares clipped to [-1, 1]; raises `InputError` where a component is no number."""
     shares = (command.forward, command.strafe, command.turn)
-    if not all(math.isfinite(share) for share in (*shares, command.direction or 0.0)):
+    if not all(map(math.isfinite, (*shares, command.direction or 0.0))):
         raise InputError(f"command: {command} holds a value that is no finite number")
     if max(map(abs, shares)) <= 1.0:
         return command

@@ -13,13 +13,17 @@ from collections import deque
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from elbowroom.body.gait.carriage import POSING
 from elbowroom.body.gait.foot_state import SWING
 from elbowroom.body.root import FOOT, HEIGHT, RISES, ROOT_STATE, WITH_FEET
 from elbowroom.control.key_frame_queue import Playback
+from elbowroom.jit import brief_exact_kernel
 from elbowroom.planning.stillness import SAME, SAME_TIME
 from elbowroom.world.ground.ground import STEP
+
+Floats = NDArray[np.float64]
 
 _REMEMBERED = 10.0  # seconds that were shown
 _PATIENCE = 0.5  # seconds in which legs come to a stand, where they can
@@ -67,11 +71,11 @@ class Retracing:
         seconds = before.seconds
         if _differ(before.pose, shown):
             self._remember(before)
-        x, z, heading = shown.root[:3].tolist()
+        x, z, heading, *velocity = shown.root[:6].tolist()
         away = max(math.dist((x, z), self._place[:2]), abs(heading - self._place[2]))
         if away > _HERE:
             self._place, self._waits = (x, z, heading), 0.0
-        in_stride = np.abs(shown.root[3:6]).max() > _STRIDING
+        in_stride = max(map(abs, velocity)) > _STRIDING
         self._stays = self._stays + seconds if in_stride and away <= _HERE else 0.0
         if self._stays > _PATIENCE:
             self._turn_back(x, z)
@@ -175,16 +179,33 @@ class Retracing:
             self.give_up()
 
 
+@brief_exact_kernel
+def _apart(one: Floats, other: Floats) -> float:
+    """The most that two rows of numbers differ by."""
+    most = 0.0
+    for i in range(len(one)):
+        most = max(most, abs(one[i] - other[i]))
+    return most
+
+
+@brief_exact_kernel
+def _posed_apart(one: Floats, other: Floats) -> float:
+    """The same of what poses the body in root states (SHOWN,)."""
+    most = 0.0
+    for i in _POSED:
+        most = max(most, abs(one[i] - other[i]))
+    return most
+
+
 def _differ(one: Playback, other: Playback) -> bool:
-    both = zip(one[:2], other[:2], strict=True)
-    return any(np.abs(before - after).max() > SAME for before, after in both)
+    return _apart(one.root, other.root) > SAME or _apart(one.upper, other.upper) > SAME
 
 
 def _stand_alike(one: Playback, other: Playback) -> bool:
     """Whether root, feet and what the hips carry are in the same place, whatever they are about to do."""
-    return bool(np.abs(one.root - other.root)[_POSED].max() < _HERE)
+    return _posed_apart(one.root, other.root) < _HERE
 
 
 def _steps(one: Playback, other: Playback, dt: float) -> int:
     """In how many steps of `dt` seconds arms go from one pose to another."""
-    return max(math.ceil(float(np.abs(one.upper - other.upper).max()) / (_ARMS * dt)), 1)
+    return max(math.ceil(_apart(one.upper, other.upper) / (_ARMS * dt)), 1)
