@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from elbowroom.body.pose.kinematics import BodyModel, leg_capsules
 from elbowroom.body.root import ROOT_STATE
-from elbowroom.control.shown.standing_about import EVEN, OTHERS, ShownBody
+from elbowroom.control.shown.standing_about import EVEN, OTHERS, ShownBody, ShownLegs
 from elbowroom.planning.model.even_points import evenly_spread
 from elbowroom.planning.model.footing import NOWHERE, Footing
 from elbowroom.world.ground.ground import Ground
@@ -32,7 +32,9 @@ class AboveSoles:
         self._feet = self.footing.each_foot(model.body)
         lifted = np.flatnonzero(self._feet.any(axis=0) & (not self.footing.plain))
         self.body = ShownBody(model.whole, model.body.radii, self._sides(model), lifted)  # for kernels
-        self._of_legs = self.body.sides[model.roots.indices]
+        legs = model.roots.indices
+        feet = np.flatnonzero(np.isin(legs, lifted))
+        self.legs = ShownLegs(model.lower, model.roots.radii, self.body.sides[legs], feet)
         shins = np.isin(model.body.joints, model.figure.legs[:, 1:])
         # The capsules that count for how hips live.
         self.carried: list[int] = np.flatnonzero(~(shins & (not self.footing.plain))).tolist()
@@ -40,12 +42,6 @@ class AboveSoles:
     def floors(self, root: Floats) -> Floats:
         """What both soles keep above (2,) in a root state (ROOT_STATE,) that stands."""
         return NOWHERE if self.footing.plain else self.footing.floors(root[None])
-
-    def floors_of_legs(self, roots: Floats) -> Floats:
-        """What the capsules of the legs keep above (C,) in all of the root states (N, WITH_FEET)."""
-        both = NOWHERE if self.footing.plain else self.footing.floors(roots)
-        own: Floats = np.append(both, both.min())[self._of_legs]
-        return own
 
     def change(self, one: Floats, other: Floats) -> bool:
         """Whether soles keep above other heights (2,) in one root state than in another."""

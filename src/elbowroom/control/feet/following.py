@@ -17,7 +17,7 @@ from elbowroom.body.pose.whole_body import WholeBody, posed_capsules
 from elbowroom.body.root import ROOT_STATE, SHOWN, WITH_FEET
 from elbowroom.by_reference import by_reference
 from elbowroom.control.feet.treading import step_on, tread_gliding
-from elbowroom.control.shown.standing_about import ShownBody, lift_feet
+from elbowroom.control.shown.standing_about import ShownBody, hold_feet
 from elbowroom.jit import brief_exact_kernel, inner_exact_kernel, plain
 from elbowroom.planning.model.axis_distances import pair_clearances
 from elbowroom.planning.model.footing import Underfoot
@@ -103,5 +103,5 @@ def followed(
     axes = posed_capsules(who.shown.whole, q, near)
     gaps, trunk = _arm_gaps(axes, who.arms), who.trunk
     folded = pair_clearances(axes, trunk.first, trunk.second, trunk.kinds, trunk.allowed, _TRUNK)
-    lift_feet(who.shown, q, near, axes)
+    hold_feet(who.shown, q, near, axes)
     return row, axes, gaps, float(folded[0, 0])

@@ -18,9 +18,9 @@ from elbowroom.control.shown.standing_about import (
     HALVINGS,
     capsules_of,
     gaps_about,
-    legs_of,
     lifted_capsules,
     proven_between,
+    room_along,
 )
 from elbowroom.planning.halving import begun, due, settle
 from elbowroom.planning.model.footing import Footing
@@ -37,7 +37,6 @@ Indices = NDArray[np.int64]
 _LOOKS = 8  # at once
 THING_MARGIN = 0.03  # metres that stay between the body that is shown and what is pushed towards it
 _REMEMBERED = 4  # poses
-_OVER_GROUND = 0.004  # metres that feet are held higher where the ground that they stand on is left out
 _LOWERING = LOWERING - DofGroup.ROOT.size  # its place in an upper body
 
 
@@ -157,13 +156,8 @@ class BodyCheck:
         """
         if self._empty:
             return farthest
-        legs, near, lowering = self.model.roots, roots.copy(), float(upper[_LOWERING])
-        near[:, :2] -= roots[0, :2]
-        axes = self.footing.lifted(legs_of(self.model.lower, near, lowering), legs, near, lowering, _OVER_GROUND)
-        lanes = np.ascontiguousarray(axes.transpose(2, 0, 1)).reshape(-1, 6, 1)
-        radii, floors = np.tile(legs.radii, len(roots)), np.tile(self.soles.floors_of_legs(roots), len(roots))
-        found = self._standing.clearances(lanes, radii, roots[0, :2], 0.0, floors, farthest)
-        return float(found.min(initial=farthest))
+        lowering, standing = float(upper[_LOWERING]), self._standing.about_bodies
+        return room_along(self.soles.legs, standing, roots, lowering, farthest)
 
     def room_above(self, root: Floats, upper: Floats) -> float:
         """Metres from all that is carried by pelvis and legs to what stands."""

@@ -4,18 +4,17 @@ Feet are held as high as `planning/model/footing.py` tells, and what their soles
 `feet/above_soles.py` tells.
 """
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.dof import DOF, LOCAL
 from elbowroom.body.pose.whole_body import WholeBody, posed_capsules, posed_legs
-from elbowroom.body.root import HEIGHT, RISES, ROOT_STATE
 from elbowroom.by_reference import by_reference
 from elbowroom.jit import brief_exact_kernel, inner_exact_kernel, plain
 from elbowroom.planning.halving import begun, due, settle
-from elbowroom.planning.model.footing import IN_GROUND
+from elbowroom.planning.model.footing import floors_under, levelled, lift_feet
 from elbowroom.planning.model.levers import Levers, travel
 from elbowroom.world.obstacles.around_body import Standing, clearances_around
 
@@ -29,8 +28,7 @@ _ONE = plain(1)  # part of that time at a time
 HALVINGS = plain(9)  # of the time between two frames: the bound on a foot in its stride is many times what it moves
 OTHERS = 2  # what is no foot
 EVEN = 5e-4  # metres by which what feet stand on may differ and be one height
-_ZERO: Any = np.float32(0.0)
-_DEEP: Any = np.float32(IN_GROUND)
+_OVER_GROUND = 0.004  # metres that feet are held higher where the ground that they stand on is left out
 
 
 @by_reference
@@ -43,29 +41,32 @@ class ShownBody(NamedTuple):
     feet: Indices  # (F,) capsules round feet, that are lifted on ground that is not plain; none on plain ground
 
 
+@by_reference
+class ShownLegs(NamedTuple):
+    """The same of what pelvis and legs carry, L capsules."""
+
+    posed: WholeBody
+    radii: Floats32  # (L,)
+    sides: Indices  # (L,)
+    feet: Indices  # (F,)
+
+
 @inner_exact_kernel
-def lift_feet(body: ShownBody, q: Floats, roots: Floats, axes: Floats32) -> None:
+def hold_feet(body: ShownBody, q: Floats, roots: Floats, axes: Floats32) -> None:
     """Lift the feet among the capsules (C, 6, N) of postures (N, DOF) and root states (N, 7 or more): they are held so.
 
     Nothing is done on plain ground.
     """
     if len(body.feet) == 0:
         return
-    level = roots.copy()
-    level[:, HEIGHT] = level[:, RISES:ROOT_STATE] = 0.0
-    strides = posed_capsules(body.whole, q, level)
-    for c in body.feet:
-        for n in range(axes.shape[2]):
-            lift = max(body.radii[c] - min(strides[c, 1, n], strides[c, 4, n]), _ZERO) + _DEEP
-            axes[c, 1, n] += lift
-            axes[c, 4, n] += lift
+    lift_feet(axes, body.feet, posed_capsules(body.whole, q, levelled(roots)), body.feet, body.radii, 0.0)
 
 
 @brief_exact_kernel
 def lifted_capsules(body: ShownBody, q: Floats, roots: Floats) -> Floats32:
     """The capsules (C, 6, N) of postures (N, DOF) and root states (N, 7 or more), feet as high as they are held."""
     axes = posed_capsules(body.whole, q, roots)
-    lift_feet(body, q, roots, axes)
+    hold_feet(body, q, roots, axes)
     return axes
 
 
@@ -79,9 +80,31 @@ def capsules_of(body: ShownBody, root: Floats, upper: Floats) -> Floats32:
 
 
 @brief_exact_kernel
-def legs_of(lower: WholeBody, roots: Floats, lowering: float) -> Floats32:
-    """What pelvis and legs carry, `posed_legs` (C, 6, N), of a few root states (N, 7 or more) with one lowering."""
-    return posed_legs(lower, roots, np.full(len(roots), lowering))
+def room_along(legs: ShownLegs, standing: Standing, roots: Floats, lowering: float, farthest: float) -> float:
+    """Metres from legs to what stands about feet, the least of root states (N, WITH_FEET); `farthest` at most.
+
+    All have one lowering. Feet are held some millimetres higher, where ground is not plain: so what they stand on
+    counts as no nearer.
+    """
+    count, near, lowerings, floors = len(legs.radii), roots.copy(), np.full(len(roots), lowering), np.full(3, -np.inf)
+    near[:, :2] -= roots[0, :2]
+    axes = posed_legs(legs.posed, near, lowerings)
+    if len(legs.feet) > 0:
+        on_plane = posed_legs(legs.posed, levelled(near), lowerings)
+        lift_feet(axes, legs.feet, on_plane, legs.feet, legs.radii, _OVER_GROUND)
+        floors[:2] = floors_under(roots)
+        floors[OTHERS] = min(floors[0], floors[1])
+    each, radii, heights = (
+        np.empty((len(roots) * count, 6, 1), np.float32),
+        np.empty(len(roots) * count, np.float32),
+        np.empty(len(roots) * count),
+    )
+    for n in range(len(roots)):
+        for c in range(count):
+            lane = n * count + c
+            each[lane, :, 0], radii[lane], heights[lane] = axes[c, :, n], legs.radii[c], floors[legs.sides[c]]
+    found = clearances_around(standing, each, radii, roots[0, 0], roots[0, 1], heights, farthest)
+    return min(float(found.min()), farthest)
 
 
 @brief_exact_kernel
