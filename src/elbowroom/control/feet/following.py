@@ -28,7 +28,7 @@ Indices = NDArray[np.int64]
 Gaps = tuple[float, float]  # metres, of the left and the right arm
 
 _TWIST, _HEAD_TURN = (columns_of(group).start + 1 for group in (DofGroup.WAIST, DofGroup.HEAD))
-_ARMS, _TRUNK = plain(2), plain(1)
+TRUNK, KINDS = plain(2), plain(3)
 # How feet follow: they step to where the root is to come; they glide as the walking cycle swings them, and stay where
 # they stand; they glide as the cycle has them, standing or not.
 STEPS, HOLDS, GLIDES = range(3)
@@ -39,8 +39,17 @@ class BesideLegs(NamedTuple):
 
     first: Indices  # (P,)
     second: Indices  # (P,)
-    kinds: Indices  # (P,) 0 left arm, 1 right arm, or all 0: the trunk
+    kinds: Indices  # (P,) 0 left arm, 1 right arm, `TRUNK`
     allowed: Floats32  # (P,) metres: as near the axes may come
+
+    def and_those(self, other: "BesideLegs") -> "BesideLegs":
+        """The pairs of both."""
+        return BesideLegs(
+            np.concatenate([self.first, other.first]),
+            np.concatenate([self.second, other.second]),
+            np.concatenate([self.kinds, other.kinds]),
+            np.concatenate([self.allowed, other.allowed]),
+        )
 
 
 @by_reference
@@ -50,8 +59,7 @@ class Follower(NamedTuple):
     shown: ShownBody
     feet: Stepper
     body: Body
-    arms: BesideLegs
-    trunk: BesideLegs
+    pairs: BesideLegs  # of both arms and the trunk
     under: Underfoot  # what it stands on
 
 
@@ -65,19 +73,19 @@ class Followed(NamedTuple):
 
 
 @inner_exact_kernel
-def _arm_gaps(axes: Floats32, pairs: BesideLegs) -> Gaps:
-    """How much nearer the left and the right arm of a body (C, 6, 1) may come to its legs."""
-    both = pair_clearances(axes, pairs.first, pairs.second, pairs.kinds, pairs.allowed, _ARMS)
-    return float(both[0, 0]), float(both[1, 0])
+def _gaps(axes: Floats32, pairs: BesideLegs) -> tuple[Gaps, float]:
+    """How much nearer both arms of a body (C, 6, 1) may come to its legs, and the trunk; infinite without pairs."""
+    found = pair_clearances(axes, pairs.first, pairs.second, pairs.kinds, pairs.allowed, KINDS)
+    return (float(found[0, 0]), float(found[1, 0])), float(found[TRUNK, 0])
 
 
 @brief_exact_kernel
 def arm_gaps(body: WholeBody, root: Floats, upper: Floats, pairs: BesideLegs) -> Gaps:
-    """`_arm_gaps` of a body at a root with feet (WITH_FEET or SHOWN,), with an upper body (LOCAL,)."""
+    """How much nearer both arms of a body (LOCAL,) may come to its legs, at a root with feet (WITH_FEET or SHOWN,)."""
     q, here = np.zeros((1, DOF)), root.copy().reshape((1, len(root)))
     q[0, DOF - LOCAL :] = upper
     here[0, :3] = 0.0
-    return _arm_gaps(posed_capsules(body, q, here), pairs)
+    return _gaps(posed_capsules(body, q, here), pairs)[0]
 
 
 @brief_exact_kernel
@@ -101,7 +109,6 @@ def followed(
     q[0, DOF - LOCAL :] = upper
     near[0, :2] = 0.0
     axes = posed_capsules(who.shown.whole, q, near)
-    gaps, trunk = _arm_gaps(axes, who.arms), who.trunk
-    folded = pair_clearances(axes, trunk.first, trunk.second, trunk.kinds, trunk.allowed, _TRUNK)
+    gaps, trunk = _gaps(axes, who.pairs)
     hold_feet(who.shown, q, near, axes)
-    return row, axes, gaps, float(folded[0, 0])
+    return row, axes, gaps, trunk

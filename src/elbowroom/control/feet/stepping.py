@@ -56,8 +56,8 @@ class Stepping:
         self._body = body_of(model.gait, motions.style.manner, motions.own_stride(model.gait))
         self._arms, self._trunk = arms_beside_legs(humanoid, motions), trunk_over_legs(humanoid, motions)
         feet = Stepper(model.gait.legs, model.gait.scale, self._own)
-        pairs, under = (self._arms.pairs, self._trunk.pairs), soles.footing.underfoot
-        self._follower = Follower(soles.body, feet, self._body, *pairs, under)
+        pairs = self._arms.pairs.and_those(self._trunk.pairs)
+        self._follower = Follower(soles.body, feet, self._body, pairs, soles.footing.underfoot)
 
     def standing(self, root: Floats) -> Floats:
         """A root state (ROOT_STATE,) with feet beside each other, carried as planned, (SHOWN,)."""

@@ -11,7 +11,7 @@ from elbowroom.body.dof import DOF, LOCAL, SEARCH_ORDER, DofGroup
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.pose.kinematics import BodyModel, body_model, posture_capsules
 from elbowroom.clips.motion_set import MotionSet
-from elbowroom.control.feet.following import BesideLegs
+from elbowroom.control.feet.following import KINDS, TRUNK, BesideLegs
 from elbowroom.planning.goal import natural_walk
 from elbowroom.planning.model.axis_distances import pair_clearances
 from elbowroom.planning.model.self_pairs import self_pairs
@@ -28,7 +28,7 @@ class TrunkOverLegs:
         self._model = model
         pairs = self_pairs(model, natural_walk(motions))
         chosen = np.flatnonzero(pairs.kinds == SEARCH_ORDER.index(DofGroup.WAIST))
-        kinds = np.zeros(len(chosen), np.int64)
+        kinds = np.full(len(chosen), TRUNK, np.int64)
         self.pairs = BesideLegs(pairs.first[chosen], pairs.second[chosen], kinds, pairs.limits[chosen])
 
     def room(self, roots: Floats, upper: Floats) -> float:
@@ -36,7 +36,7 @@ class TrunkOverLegs:
         here, q = roots.copy(), np.zeros((len(roots), DOF))
         here[:, :3], q[:, DOF - LOCAL :] = 0.0, upper
         axes, pairs = posture_capsules(self._model, q, here), self.pairs
-        return float(pair_clearances(axes, pairs.first, pairs.second, pairs.kinds, pairs.allowed, 1).min())
+        return float(pair_clearances(axes, pairs.first, pairs.second, pairs.kinds, pairs.allowed, KINDS).min())
 
 
 _TRUNKS: Shared[TrunkOverLegs] = Shared()

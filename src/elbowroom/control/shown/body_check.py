@@ -42,9 +42,7 @@ _LOWERING = LOWERING - DofGroup.ROOT.size  # its place in an upper body
 
 def configuration(root: Floats, upper: Floats) -> Floats:
     """The configuration `q` (DOF,) of a root state (7,) and an upper body (LOCAL,)."""
-    q = np.empty(DOF)
-    q[: DOF - LOCAL], q[DOF - LOCAL :] = root[: DOF - LOCAL], upper
-    return q
+    return np.concatenate([root[: DOF - LOCAL], upper])
 
 
 class Frames(NamedTuple):
@@ -274,8 +272,8 @@ class BodyCheck:
         """How far each of the axes (C, 6, 1) about a root's place is from what stands, (C,)."""
         if self._empty:
             return self._nowhere
-        x, z = root[:2].tolist()
-        return gaps_about(self.soles.body, self._standing.about_bodies, axes, x, z, floors, np.inf)
+        (x, z), standing = root[:2].tolist(), self._standing.about_bodies
+        return gaps_about(self._radii, self.soles.body.sides, standing, axes, x, z, floors, np.inf)
 
     def _pose(self, root: Floats, upper: Floats, axes: Floats32 | None = None) -> _Pose:
         """A pose, remembered; its `axes` may be known."""

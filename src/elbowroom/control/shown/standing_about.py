@@ -109,23 +109,24 @@ def room_along(legs: ShownLegs, standing: Standing, roots: Floats, lowering: flo
 
 @brief_exact_kernel
 def gaps_about(
-    body: ShownBody, standing: Standing, axes: Floats32, x: float, z: float, floors: Floats, farthest: float
+    radii: Floats32, sides: Indices, standing: Standing, axes: Floats32, x: float, z: float, floors: Floats, most: float
 ) -> Floats32:
     """How far each capsule (C, 6, 1) about a place (x, z) is from what stands, (C,) metres: `clearances_around`.
 
-    Both soles keep above `floors` (2,); what is no foot is held above the lower of them too.
+    `radii` and `sides` are as in `ShownBody`. Both soles keep above `floors` (2,); what is no foot is held above the
+    lower of them too. What is more than `most` metres is not told apart.
     """
     low, count = min(floors[0], floors[1]), len(axes)
     heights = np.full(count, low)
     if max(floors[0], floors[1]) > low + EVEN:
         for c in range(count):
-            if body.sides[c] != OTHERS:
-                heights[c] = floors[body.sides[c]]
-    found = clearances_around(standing, axes, body.radii, x, z, heights, farthest)
+            if sides[c] != OTHERS:
+                heights[c] = floors[sides[c]]
+    found = clearances_around(standing, axes, radii, x, z, heights, most)
     if low > -np.inf:
         for c in range(count):
-            if body.sides[c] == OTHERS:
-                lowest = min(axes[c, 1, 0], axes[c, 4, 0]) - body.radii[c]
+            if sides[c] == OTHERS:
+                lowest = min(axes[c, 1, 0], axes[c, 4, 0]) - radii[c]
                 found[c] = min(found[c], lowest - np.float32(low))
     return found
 
@@ -153,6 +154,7 @@ def proven_between(
         q[0, DOF - LOCAL :] = begin + shares[0] * upper_way
         near[0, 0] -= x
         near[0, 1] -= z
-        found[0] = gaps_about(body, standing, lifted_capsules(body, q, near), x, z, floors, enough)
+        axes = lifted_capsules(body, q, near)
+        found[0] = gaps_about(body.radii, body.sides, standing, axes, x, z, floors, enough)
         settle(proof, found, _ONE)
     return bool(proof.least.min() >= 0.0)
