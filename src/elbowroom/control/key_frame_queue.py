@@ -102,7 +102,7 @@ class KeyFrameQueue:
 
     def _next(self) -> int:
         """The number of the first key frame that is still to come."""
-        return _first_after(self._times, self.time)
+        return first_after(self._times, self.time)
 
     def splice(self, path: RootPath, uppers: Floats, velocity: Floats, velocities: Floats | None = None) -> None:
         """From the start of `path` on, play it with the upper body `uppers` (n+1, LOCAL) at its key times.
@@ -151,7 +151,7 @@ class KeyFrameQueue:
 
 
 @brief_exact_kernel
-def _first_after(times: Floats, time: float) -> int:
+def first_after(times: Floats, time: float) -> int:
     """The number of the first of increasing times that is later than another."""
     number = 0
     while number < len(times) and times[number] <= time + _SAME_TIME:
@@ -162,7 +162,7 @@ def _first_after(times: Floats, time: float) -> int:
 @brief_exact_kernel
 def _coming(times: Floats, roots: Floats, time: float) -> Floats:
     """The seconds from a time and the roots (m, 8) of key frames that are later."""
-    first = _first_after(times, time)
+    first = first_after(times, time)
     coming = np.empty((len(times) - first, 1 + ROOT_STATE))
     for n in range(len(coming)):
         coming[n, 0], coming[n, 1:] = times[first + n] - time, roots[first + n]

@@ -73,7 +73,7 @@ class Followed(NamedTuple):
 
 
 @inner_exact_kernel
-def _gaps(axes: Floats32, pairs: BesideLegs) -> tuple[Gaps, float]:
+def _gaps_to_legs(axes: Floats32, pairs: BesideLegs) -> tuple[Gaps, float]:
     """How much nearer both arms of a body (C, 6, 1) may come to its legs, and the trunk; infinite without pairs."""
     found = pair_clearances(axes, pairs.first, pairs.second, pairs.kinds, pairs.allowed, KINDS)
     return (float(found[0, 0]), float(found[1, 0])), float(found[TRUNK, 0])
@@ -85,7 +85,7 @@ def arm_gaps(body: WholeBody, root: Floats, upper: Floats, pairs: BesideLegs) ->
     q, here = np.zeros((1, DOF)), root.copy().reshape((1, len(root)))
     q[0, DOF - LOCAL :] = upper
     here[0, :3] = 0.0
-    return _gaps(posed_capsules(body, q, here), pairs)[0]
+    return _gaps_to_legs(posed_capsules(body, q, here), pairs)[0]
 
 
 @brief_exact_kernel
@@ -109,6 +109,6 @@ def followed(
     q[0, DOF - LOCAL :] = upper
     near[0, :2] = 0.0
     axes = posed_capsules(who.shown.whole, q, near)
-    gaps, trunk = _gaps(axes, who.pairs)
+    gaps, trunk = _gaps_to_legs(axes, who.pairs)
     hold_feet(who.shown, q, near, axes)
     return row, axes, gaps, trunk
