@@ -175,12 +175,15 @@ def rehearse_place() -> None:
 
 
 def rehearse_ground(humanoid: Humanoid) -> None:
-    """Stand before a low box, and follow the ground onto it."""
-    scene = _scene_with(*_SILL)
+    """Stand before a low box, put a foot elsewhere at once, and follow the ground onto it."""
+    scene, upper = _scene_with(*_SILL), np.zeros(LOCAL)
     model, states = body_model(humanoid), np.zeros((1, ROOT_STATE))
     footing = Footing(model, scene.ground)
     footing.floors(footing.stood(states)[0])
     footing.lifted(leg_capsules(model, states), model.roots, states)
+    stands = np.concatenate([beside(model.gait, states[0]), np.zeros(CARRIAGE)])
+    elsewhere = stands + 0.3 * (np.arange(len(stands)) == ROOT_STATE)
+    BodyCheck(humanoid, scene).free_between(Frames((stands, elsewhere), (upper, upper), (0.0, 1.0)))
     heights_along(scene.ground, 0.0, np.array([[0.0, 0.0], [0.0, 1.0]]))
     heights_beside(scene.ground, 0.0, 0, np.zeros((2, 2, 2)))
     on_ground(scene, RootState())

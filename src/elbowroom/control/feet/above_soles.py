@@ -29,12 +29,12 @@ class AboveSoles:
 
     def __init__(self, model: BodyModel, ground: Ground) -> None:
         self.footing = Footing(model, ground)
-        self._feet = self.footing.each_foot(model.body)
-        lifted = np.flatnonzero(self._feet.any(axis=0) & (not self.footing.plain))
+        feet = self.footing.each_foot(model.body).any(axis=0)
+        lifted = np.flatnonzero(feet & (not self.footing.plain))
         self.body = ShownBody(model.whole, model.body.radii, self._sides(model), lifted)  # for kernels
         legs = model.roots.indices
-        feet = np.flatnonzero(np.isin(legs, lifted))
-        self.legs = ShownLegs(model.lower, model.roots.radii, self.body.sides[legs], feet)
+        own = np.flatnonzero(np.isin(legs, lifted))
+        self.legs = ShownLegs(model.lower, model.roots.radii, self.body.sides[legs], own)
         shins = np.isin(model.body.joints, model.figure.legs[:, 1:])
         # The capsules that count for how hips live.
         self.carried: list[int] = np.flatnonzero(~(shins & (not self.footing.plain))).tolist()
@@ -49,14 +49,6 @@ class AboveSoles:
             return False
         both = zip(one.tolist(), other.tolist(), strict=True)
         return any(first > second + EVEN or second > first + EVEN for first, second in both)
-
-    def soles_above(self, axes: Floats32, floors: Floats) -> float:
-        """How far the capsules of the feet (C, 6, N) keep above what is not looked at under both soles (2,), metres."""
-        lowest, both = (
-            np.minimum(axes[:, 1], axes[:, 4]).min(axis=1) - self.body.radii,
-            zip(self._feet, floors, strict=True),
-        )
-        return float(min(lowest[own].min(initial=np.inf) - floor for own, floor in both))
 
     def _sides(self, model: BodyModel) -> Longs:
         """Which capsules keep above which sole, as in `ShownBody`."""

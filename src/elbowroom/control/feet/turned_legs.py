@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.dof import LOWERING, DofGroup
-from elbowroom.body.gait.foot_state import X, Z
+from elbowroom.body.gait.foot_state import Z
 from elbowroom.body.gait.legs import leg_rotations
 from elbowroom.body.pose.kinematics import BodyModel, lower_body
 from elbowroom.body.pose.posing import pose_legs
@@ -41,8 +41,10 @@ def turned_at(one: Floats, other: Floats) -> Floats:
 
     At none where they go straight, nearly; at the more the farther feet go.
     """
-    feet = [row[ROOT_STATE:WITH_FEET].reshape(-1, FOOT)[:, [X, Z]] for row in (one, other)]
-    raised, swung = raised_between(one, other), float(np.linalg.norm(feet[1] - feet[0], axis=1).max(initial=0.0))
+    feet = range(ROOT_STATE, min(len(one), WITH_FEET), FOOT)
+    before, after = one.tolist(), other.tolist()
+    ways = (math.dist(before[at : at + Z + 1], after[at : at + Z + 1]) for at in feet)  # of x and z, which come first
+    raised, swung = raised_between(one, other), max(ways, default=0.0)
     if raised <= _RAISED and swung <= _SWUNG:
         return np.empty(0)
     count = _QUARTERS * math.ceil(max(raised, swung) / (_QUARTERS * _APART))

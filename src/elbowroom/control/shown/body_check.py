@@ -16,6 +16,7 @@ from elbowroom.control.others.neighbour import Neighbour
 from elbowroom.control.others.room_left import in_world, leaves_room
 from elbowroom.control.shown.standing_about import (
     HALVINGS,
+    are_free,
     capsules_of,
     gaps_about,
     lifted_capsules,
@@ -231,17 +232,13 @@ class BodyCheck:
 
     def _turns_free(self, frames: Frames, floors: Floats) -> bool:
         """Whether legs that turn by the shortest arcs are free of what stands, at some moments between two frames."""
-        shares, parts = turned_at(*frames.roots), self.model.roots
+        shares = turned_at(*frames.roots)
         if not len(shares):
             return True
         legs = turned_legs(self.model, frames.roots, frames.uppers, shares)
-        lifted = self.soles.footing.lifted(legs.axes, parts, legs.states, legs.lowerings)
-        axes = np.repeat(self._pose(frames.roots[0], frames.uppers[0]).axes, len(legs.states), axis=2)
-        axes[parts.indices] = lifted
-        if self.soles.soles_above(axes, floors) < 0.0:
-            return False
-        each = (np.ascontiguousarray(axes[:, :, [n]]) for n in range(len(legs.states)))
-        return all(self._gaps(one, frames.roots[0], floors)[parts.indices].min() >= 0.0 for one in each)
+        lifted = self.soles.footing.lifted(legs.axes, self.model.roots, legs.states, legs.lowerings)
+        x, z = frames.roots[0][:2].tolist()
+        return are_free(self.soles.legs, self._standing.about_bodies, lifted, x, z, floors)
 
     @property
     def accompanied(self) -> bool:

@@ -28,6 +28,7 @@ _ONE = plain(1)  # part of that time at a time
 HALVINGS = plain(9)  # of the time between two frames: the bound on a foot in its stride is many times what it moves
 OTHERS = 2  # what is no foot
 EVEN = 5e-4  # metres by which what feet stand on may differ and be one height
+_TOUCHING = 0.01  # metres: who has more room is free, however much that is
 _OVER_GROUND = 0.004  # metres that feet are held higher where the ground that they stand on is left out
 
 
@@ -129,6 +130,19 @@ def gaps_about(
                 lowest = min(axes[c, 1, 0], axes[c, 4, 0]) - radii[c]
                 found[c] = min(found[c], lowest - np.float32(low))
     return found
+
+
+@brief_exact_kernel
+def are_free(legs: ShownLegs, standing: Standing, axes: Floats32, x: float, z: float, floors: Floats) -> bool:
+    """Whether legs (L, 6, N) about a place (x, z) touch nothing that stands; feet keep above `floors` (2,)."""
+    for n in range(axes.shape[2]):
+        for c in legs.feet:
+            if min(axes[c, 1, n], axes[c, 4, n]) - legs.radii[c] < floors[legs.sides[c]]:
+                return False
+        one = axes[:, :, n : n + 1].copy()
+        if gaps_about(legs.radii, legs.sides, standing, one, x, z, floors, _TOUCHING).min() < 0.0:
+            return False
+    return True
 
 
 @brief_exact_kernel
