@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from elbowroom.body.dof import DOF, LOCAL, LOWERING, DofGroup
 from elbowroom.body.humanoid import Humanoid
-from elbowroom.body.pose.kinematics import body_model, posture_capsules
+from elbowroom.body.pose.kinematics import body_model
 from elbowroom.control.feet.above_soles import AboveSoles
 from elbowroom.control.feet.turned_legs import turned_at, turned_legs
 from elbowroom.control.others.neighbour import Neighbour
@@ -137,9 +137,10 @@ class BodyCheck:
         """The same with feet where they are shown, and not as high as they are held against obstacles."""
         if self.footing.plain:
             return self.axes(root, upper)
-        near = root.copy()
-        near[:2] = 0.0
-        return posture_capsules(self.model, configuration(near, upper), near)
+        return self._capsules(root, upper, held=False)
+
+    def _capsules(self, root: Floats, upper: Floats, *, held: bool) -> Floats32:
+        return capsules_of(self.soles.body, np.ascontiguousarray(root), np.ascontiguousarray(upper), held)
 
     def room_of_legs(self, root: Floats, upper: Floats, time: float, axes: Floats32 | None = None) -> float:
         """Metres from the legs to the nearest obstacle, as `shown_clearance` of the whole body.
@@ -278,7 +279,7 @@ class BodyCheck:
             if pose.root is root and pose.upper is upper:
                 return pose
         if axes is None:
-            axes = capsules_of(self.soles.body, np.ascontiguousarray(root), np.ascontiguousarray(upper))
+            axes = self._capsules(root, upper, held=True)
         floors = self.soles.floors(root)
         gaps = self._gaps(axes, root, floors)
         pose = _Pose(root, upper, axes, floors, gaps, gaps.tolist())

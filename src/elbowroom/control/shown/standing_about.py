@@ -72,12 +72,15 @@ def lifted_capsules(body: ShownBody, q: Floats, roots: Floats) -> Floats32:
 
 
 @brief_exact_kernel
-def capsules_of(body: ShownBody, root: Floats, upper: Floats) -> Floats32:
-    """The capsules (C, 6, 1) of a root state and an upper body (LOCAL,), as seen from the root's place."""
+def capsules_of(body: ShownBody, root: Floats, upper: Floats, held: bool) -> Floats32:
+    """The capsules (C, 6, 1) of a root state and an upper body (LOCAL,), as seen from the root's place.
+
+    Feet are as high as they are `held`, or where they are shown.
+    """
     q, near = np.zeros((1, DOF)), root.copy().reshape((1, len(root)))
     q[0, DOF - LOCAL :] = upper
     near[0, :2] = 0.0
-    return lifted_capsules(body, q, near)
+    return lifted_capsules(body, q, near) if held else posed_capsules(body.whole, q, near)
 
 
 @brief_exact_kernel
