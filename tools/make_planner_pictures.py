@@ -133,7 +133,7 @@ def failed_alone(humanoid: Humanoid) -> tuple[UpperBodySearch, JointStep, NDArra
         alone = dressing.apart()
         if alone.failed is None or not alone.paths:
             continue
-        step = dressing.joint_step(alone.paths[0])
+        step = dressing.joint_step()
         answer = step.search()
         depth = dressing.blocked[1]
         if len(answer.nodes) and _differs(step.configurations(0, depth)[answer.nodes[depth, 0]], dressing, depth):

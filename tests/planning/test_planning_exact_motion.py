@@ -146,7 +146,7 @@ def test_who_stands_before_a_wall_plans_once_and_leaves_as_soon_as_asked(stiff: 
             upper=local.configurations[1],
             velocity=local.velocities[1],
         )
-    assert checks[0] > 0
+    assert max(checks) > 0
     assert checks[-10:] == [0] * 10
     assert local.blockade is not None
     assert local.blockade.obstacles == (0,)

@@ -70,8 +70,7 @@ def dressed(humanoid: Humanoid, scene: Scene, path: RootPath) -> UpperBodySearch
 
 
 def step_of(dressing: UpperBodySearch) -> JointStep:
-    assert dressing._waist is not None
-    return dressing.joint_step(dressing._waist)
+    return dressing.joint_step()
 
 
 def posture(step: JointStep, depth: int, nodes: tuple[int, ...]) -> Floats:

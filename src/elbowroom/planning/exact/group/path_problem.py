@@ -85,6 +85,7 @@ class PathProblem(NamedTuple):
             self.path.interval,
             begins.harsh,
             begins.ahead > 0,
+            whole=False,
         )
 
 

@@ -56,6 +56,7 @@ class GroupTask(NamedTuple):
     interval: float  # seconds
     harsh: bool  # whether it may begin as hard as it takes, if there is no other path
     settled: bool  # whether it goes on from a path that is proven: then the start lowers no clearance
+    whole: bool = False  # whether all nodes are looked at, also those that the search could do without
 
 
 class GroupPath(NamedTuple):
@@ -65,7 +66,7 @@ class GroupPath(NamedTuple):
     keys: Floats  # (reached+1, d)
     velocities: Floats  # (reached+1, d) of the curve
     entries: Longs  # (n,) cache entries of its sweeps through the intervals
-    cost: Floats32  # (n+1, W+EXTRA) of the nodes, infinite where one is not free
+    cost: Floats32  # (n+1, W+EXTRA) of the nodes, infinite where one is not free; too little where nobody looked
     most: float  # metres: no greater clearance was asked for, since the start has less
     checks: int  # capsules checked
     nodes: int  # settled

@@ -1,10 +1,11 @@
 """The path of one group along a root path: cheapest through the lattice, then proven as it will be shown.
 
-Where a path touches between its key times the edge is closed, with those near to it; then the edges of that interval,
-and of those next to it, through which the next paths would lead are checked in one batch, and the next cheapest path is
-taken. The more paths touch, the farther away edges are checked, twice as far each time: what no path gets past is in
-the way for many intervals, and would be run into in one after the other. So edges are swept only where the search is
-blocked, and every candidate is swept as a whole. It is one compiled call.
+Nodes are looked at where a cheapest path leads through them (`node_costs`), and all about where one touches. Where a
+path touches between its key times the edge is closed, with those near to it; then the edges of that interval, and of
+those next to it, through which the next paths would lead are checked in one batch, and the next cheapest path is taken.
+The more paths touch, the farther away edges are checked, twice as far each time: what no path gets past is in the way
+for many intervals, and would be run into in one after the other. So edges are swept only where the search is blocked,
+and every candidate is swept as a whole. It is one compiled call.
 """
 
 from typing import NamedTuple
@@ -15,7 +16,7 @@ from numpy.typing import NDArray
 from elbowroom.jit import exact_kernel, helper, plain
 from elbowroom.planning.exact.group.caches import GroupCache
 from elbowroom.planning.exact.group.carriers import Carriers, carrier_in, carriers_of
-from elbowroom.planning.exact.group.node_costs import node_costs
+from elbowroom.planning.exact.group.node_costs import Looks, NodeCosts, begun_costs, look
 from elbowroom.planning.exact.group.problem import GroupPath, GroupTask, Weights
 from elbowroom.planning.exact.lattice.closed_edges import ClosedEdges, new_closed_edges, reopen_first, with_tables
 from elbowroom.planning.exact.lattice.dynamic_programming import cheapest_path, settle_backward, widen
@@ -40,6 +41,8 @@ _CLOSE_RADIUS = 0.1  # radians: edges so near to one that touches are closed wit
 _FIRST_SLACK = 0.1  # squared radians: how much dearer paths are checked where one touches; doubled when those were
 _BEGIN = plain(0)  # the depth at which the search begins
 _GENTLY = plain(True)  # how it begins
+_WIDELY = plain(False)
+_LOOKS = 4  # along so many paths before all nodes are looked at
 
 
 class _Question(NamedTuple):
@@ -169,24 +172,25 @@ def _close_promising(
 @helper
 def _begun(
     scratch: Scratch, cache: GroupCache, task: GroupTask, weights: Weights, edges: ClosedEdges
-) -> tuple[_Question, Lattice, float, int]:
-    """The lattice of a task with its nodes' costs, all edges open, and what the search works on.
+) -> tuple[_Question, Lattice, Looks, NodeCosts, float, int]:
+    """The lattice of a task, all edges open and no node looked at, and what the search works on.
 
     Also the greatest clearance that may be asked for, and the capsules checked.
     """
-    group, chain, postures, tables = cache.group, cache.chain, cache.group.postures, cache.group.tables
+    group, chain, postures, known = cache.group, cache.chain, cache.group.postures, cache.group.tables
     obstacles, goals = task.obstacles, task.goals
     carriers = carriers_of(cache.roots, cache.waists, task.roots, task.carriers, postures.limb.chain.carries)
-    begin_round(tables.entries)
+    begin_round(known.entries)
     extras = extra_nodes(
         postures.configurations, postures.columns, postures.step, goals, task.previous, task.start, task.settled
     )
-    cost, most, checks = node_costs(scratch, postures, tables, carriers, task, weights, extras)
+    looks = Looks(scratch, postures, known, carriers, obstacles, goals, extras)
+    nodes, most, checks = begun_costs(looks, task, weights)
     lattice = Lattice(
         postures,
         extras.postures,
         goals,
-        cost,
+        nodes.cost,
         edges.tables,
         edges.closed,
         extras.previous,
@@ -194,7 +198,42 @@ def _begun(
     )
     margins, limb = np.minimum(task.motion_margins, most), MovedLimb(postures, group.levers, chain)
     question = _Question(scratch, group.sweeps, limb, carriers, obstacles, margins, group.speed, group.acceleration)
-    return question, lattice, most, checks
+    return question, lattice, looks, nodes, most, checks
+
+
+@helper
+def _cheapest(
+    lattice: Lattice, work: Work, looks: Looks, nodes: NodeCosts, weights: Weights, first: int, narrow: bool
+) -> tuple[int, Longs, int, int]:
+    """The greatest depth that is reached, the nodes of the cheapest path to there, all of which have been looked at.
+
+    It is sought from the depth `first` on, narrowly if that is enough. Also the nodes settled and the capsules checked.
+    """
+    settled, checks, last, looked, whole = 0, 0, nodes.tables.shape[0], 0, np.zeros(nodes.tables.shape, np.bool_)
+    while True:
+        reached, count = cheapest_path(lattice, work, first, narrow)
+        path, settled = traced(lattice, work, reached), settled + count
+        whole[:] = reached < last or looked >= _LOOKS
+        first, count = look(looks, nodes, path[:0] if reached < last else path, whole, weights)
+        checks, looked = checks + count, looked + 1
+        if first > last:
+            return reached, path, settled, checks
+        first = _BEGIN if narrow else min(max(first - 1, _BEGIN), reached)
+
+
+@helper
+def _settled(
+    lattice: Lattice, work: Work, looks: Looks, nodes: NodeCosts, weights: Weights, whole: Bools
+) -> tuple[int, int]:
+    """Look at all nodes of some intervals (n,), and settle those too that a narrow search left out.
+
+    Returns the nodes settled and the capsules checked.
+    """
+    first, checks = look(looks, nodes, nodes.tables[:0], whole, weights)
+    if first >= nodes.cost.shape[0]:
+        return widen(lattice, work), checks
+    _, settled = cheapest_path(lattice, work, max(first - 1, _BEGIN), _WIDELY)
+    return settled, checks
 
 
 @exact_kernel
@@ -207,16 +246,17 @@ def search_group(scratch: Scratch, cache: GroupCache, task: GroupTask, weights: 
     limits, most_rounds = cache.group.limits, weights.rounds
     horizon, row = goals.shape[0] - 1, cache.group.postures.moves.shape[1] + EXTRA
     work, edges = new_work(horizon + 1, row), new_closed_edges(horizon, row)
-    question, lattice, most, checks = _begun(scratch, cache, task, weights, edges)
+    question, lattice, looks, nodes, most, checks = _begun(scratch, cache, task, weights, edges)
+    if task.whole:
+        checks += look(looks, nodes, nodes.tables[:0], np.ones(horizon, np.bool_), weights)[1]
     entries = np.empty(horizon, np.int64)
     touches, stiff = np.zeros(horizon, np.bool_), np.empty(horizon + 1, np.bool_)
     first, deepest, spent, settled, gentle, harsh = _BEGIN, 0, most_rounds, 0, _GENTLY, False
     keys, tangents = np.empty(goals.shape), np.empty(goals.shape)
     for rounds in range(most_rounds):
-        reached, count = cheapest_path(lattice, work, first, rounds == 0)
-        settled += count
-        nodes = traced(lattice, work, reached)
-        keys_into(lattice, nodes, keys)
+        reached, path, count, more = _cheapest(lattice, work, looks, nodes, weights, first, rounds == 0)
+        settled, checks = settled + count, checks + more
+        keys_into(lattice, path, keys)
         if reached < horizon and gentle and harsh and may_be_harsh:
             gentle, first = False, _BEGIN
             reopen_first(edges)
@@ -234,11 +274,12 @@ def search_group(scratch: Scratch, cache: GroupCache, task: GroupTask, weights: 
         if not touches.any():
             deepest, spent = horizon, rounds + 1
             break
-        settled += widen(lattice, work)
         looked_at = _near_to(touches, 1 << rounds)
+        count, more = _settled(lattice, work, looks, nodes, weights, looked_at)
+        settled, checks = settled + count, checks + more
         edges = with_tables(edges, looked_at)
         lattice = _closing(lattice, edges)
-        first, farthest = _close(lattice, work, edges, nodes, touches, looked_at)
+        first, farthest = _close(lattice, work, edges, path, touches, looked_at)
         deepest = max(deepest, first)
         best = least_in(work.costs[horizon])
         settle_backward(lattice, work, first, best + farthest)

@@ -140,7 +140,9 @@ def _settle_from(lattice: Lattice, work: Work, begin: int, most: float) -> tuple
 
 @exact_kernel
 def cheapest_path(lattice: Lattice, work: Work, begin: int, narrow: bool) -> tuple[int, int]:
-    """Settle the lattice from depth `begin` on: 0 at first, later the least depth at which edges were closed.
+    """Settle the lattice from depth `begin` on: 0 at first, later the least depth after which something grew dearer.
+
+    That must have been reached before.
 
     Returns the greatest depth that is reached and the number of nodes that have a path. Nodes from which even the least
     node costs of the depths to come add up to more than a known path costs are left out. A `narrow` search first allows

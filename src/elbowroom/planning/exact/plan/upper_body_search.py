@@ -59,10 +59,18 @@ class Effort(Enum):
     REFINED = "refined"  # then with more postures
 
 
+class _WaistPath(NamedTuple):
+    """A path of the waist, or of the trunk as one limb, and what it was asked for."""
+
+    path: GroupPath
+    task: GroupTask
+    trunk: bool
+
+
 class _Trunk(NamedTuple):
     """Paths of the waist and of what could follow it."""
 
-    waist: GroupPath  # as it was found, with the costs of its nodes
+    waist: _WaistPath  # as it was found
     found: GroupPaths
     guides: Mapping[DofGroup, Guide]  # that the waist's children follow
 
@@ -85,7 +93,7 @@ class UpperBodySearch:
         self.deepest = 0  # key time that all groups reached in the best attempt
         self.blocked = 0, 0  # the group, as a number, that failed first, and the key time that it did not reach
         self.spent = False  # whether the joint step did as much as it may
-        self._waist: GroupPath | None = None
+        self._waist: _WaistPath | None = None
         # infinite where the legs have no room to crouch as a node does
         self._crouching = no_costs(self.caches, DofGroup.WAIST, self.path.horizon)
 
@@ -107,8 +115,10 @@ class UpperBodySearch:
     @property
     def barred(self) -> bool:
         """Whether no path is left that the waist could try: then there is none for all groups together either."""
-        way = self._waist
-        return way is not None and way.reached < self.path.horizon and way.rounds < self.weights.rounds
+        if self._waist is None:
+            return False
+        way = self._waist.path
+        return way.reached < self.path.horizon and way.rounds < self.weights.rounds
 
     def too_deep(self, depth: int, waists: Floats) -> Bools:
         """Which of some waists (N, d) crouch deeper at a key time than the legs can there."""
@@ -123,7 +133,7 @@ class UpperBodySearch:
         found, last = self.apart(), self.problem.last
         if found.failed is not None and not again:
             return None
-        waist_has_way = self._waist is not None and self._waist.reached == self.path.horizon
+        waist_has_way = self._waist is not None and self._waist.path.reached == self.path.horizon
         failed = found.failed is not None
         if last is not None and waist_has_way and (failed or jolts(found.keys, last.keys, last.known)):
             previous = self.with_previous_waist()
@@ -159,7 +169,7 @@ class UpperBodySearch:
     def apart(self) -> GroupPaths:
         """Each group by itself: the waist and what could follow it, or both as one limb; then the arms."""
         self._waist = self._waist_path(self._crouching)
-        trunks = [_Trunk(self._waist, self._children.followers(self._waist, {}, self.evidence_log), {})]
+        trunks = [_Trunk(self._waist, self._children.followers(self._waist.path, {}, self.evidence_log), {})]
         if self._is_pressed(trunks[0].found):
             trunks += self._as_one()
         if len(trunks) > 1 and self._is_better(trunks[1].found, trunks[0].found):
@@ -187,12 +197,13 @@ class UpperBodySearch:
     def _as_one(self) -> list[_Trunk]:
         """The path of waist and followers as one limb, each of them guided by it; nothing if there is none."""
         trunk = self._waist_path(self._crouching, trunk=True)
-        if trunk.reached < self.path.horizon:
+        if trunk.path.reached < self.path.horizon:
             return []
-        waist = self._waist_path(self._crouching, self._only(trunk.keys))
-        guides = self._following(trunk.keys)
+        waist = self._waist_path(self._crouching, self._only(trunk.path.keys)).path
+        guides = self._following(trunk.path.keys)
         found = self._children.followers(waist, guides, self.evidence_log)
-        return [_Trunk(trunk._replace(velocities=waist.velocities, entries=waist.entries), found, guides)]
+        path = trunk.path._replace(velocities=waist.velocities, entries=waist.entries)
+        return [_Trunk(trunk._replace(path=path), found, guides)]
 
     def _only(self, keys: Floats) -> Guide:
         """A guide of the waist that leaves it no other path than through `keys` (n+1, d)."""
@@ -222,10 +233,10 @@ class UpperBodySearch:
             other.reached,
         )
 
-    def _under(self, waist: GroupPath, guides: Mapping[DofGroup, Guide] | None = None) -> GroupPaths:
+    def _under(self, waist: _WaistPath, guides: Mapping[DofGroup, Guide] | None = None) -> GroupPaths:
         """The waist's children under a path of it."""
         guides = guides or {}
-        return self._with_arms(_Trunk(waist, self._children.followers(waist, guides, self.evidence_log), guides))
+        return self._with_arms(_Trunk(waist, self._children.followers(waist.path, guides, self.evidence_log), guides))
 
     def _with_arms(self, trunk: _Trunk) -> GroupPaths:
         """A trunk's path, and those of the arms under it."""
@@ -258,10 +269,10 @@ class UpperBodySearch:
         """All groups at once, guided by the joint step; at most so many of its answers may turn out to touch."""
         waist = self._waist
         assert waist is not None
-        if waist.reached < self.path.horizon:
-            return GroupPaths((), waist, waist.reached)
-        step = self.joint_step(waist)
-        ways = GroupPaths((), waist, 0)
+        if waist.path.reached < self.path.horizon:
+            return GroupPaths((), waist.path, waist.path.reached)
+        step = self.joint_step()
+        ways = GroupPaths((), waist.path, 0)
         for _ in range(rounds):
             began = perf_counter_ns()
             answer = step.search(self.evidence_log.go_on)
@@ -273,8 +284,8 @@ class UpperBodySearch:
                 SEARCH_ORDER[g]: guide(step.nodes[g], answer.nodes[:, column]) for column, g in enumerate(PRODUCT)
             }
             way = self._waist_path(self._crouching, guides[DofGroup.WAIST])
-            if way.reached == self.path.horizon:
-                guides |= self._following(way.keys)
+            if way.path.reached == self.path.horizon:
+                guides |= self._following(way.path.keys)
             ways = self._under(way, guides)
             if len(ways.paths) == len(SEARCH_ORDER):
                 break
@@ -287,8 +298,7 @@ class UpperBodySearch:
 
     def blockade(self) -> Blockade:
         """Why there is no way."""
-        assert self._waist is not None
-        return blockade(self.joint_step(self._waist), self.path, self.blocked[1], self.problem.near.numbers)
+        return blockade(self.joint_step(), self.path, self.blocked[1], self.problem.near.numbers)
 
     def blocked_slice(self) -> Blocked:
         """The slice that the first group to fail could not get through."""
@@ -296,22 +306,29 @@ class UpperBodySearch:
         waist = self._waist
         assert waist is not None
         at, known = columns_of(SEARCH_ORDER[number]), self.caches.group(DofGroup.WAIST).postures.configurations
-        costs = waist.cost[depth, : len(known)]
+        costs = self._looked_at(waist).cost[depth, : len(known)]
         order = np.argsort(costs, kind="stable")
         waists = known[order[np.isfinite(costs[order])]]
-        if depth < len(waist.keys):
-            waists = np.concatenate([waist.keys[depth : depth + 1], waists])
+        if depth < len(waist.path.keys):
+            waists = np.concatenate([waist.path.keys[depth : depth + 1], waists])
         margin = float(self.problem.anew.margins[number, depth])
         return Blocked(depth, self._surroundings(), self.goals[depth, at], margin, waists)
 
     def waist_at(self, depth: int) -> Floats:
         """The waist (d,) that was chosen for itself at a key time that it reached."""
         assert self._waist is not None
-        key: Floats = self._waist.keys[depth]
+        key: Floats = self._waist.path.keys[depth]
         return key
 
-    def joint_step(self, waist: GroupPath) -> JointStep:
+    def _looked_at(self, waist: _WaistPath) -> GroupPath:
+        """The waist's path with the costs of all its nodes, also of those that its search could do without."""
+        looked_at = self.evidence_log.search(DofGroup.WAIST, waist.task._replace(whole=True), trunk=waist.trunk)
+        return waist.path._replace(cost=looked_at.cost)
+
+    def joint_step(self) -> JointStep:
         """The joint step of this path, nothing filled in yet."""
+        assert self._waist is not None
+        waist = self._looked_at(self._waist)
         caches, whole = self.caches, waist.reached == self.path.horizon
         problem = self.problem.under(waist.keys) if whole else self.problem
         task, children = problem.task(DofGroup.WAIST, problem.roots), []
@@ -331,7 +348,7 @@ class UpperBodySearch:
         problem = self.problem
         return surroundings(self.path.states, self.caches.roots, problem.roots, problem.near.moments)
 
-    def _waist_path(self, costs: Floats32, follow: Guide | None = None, *, trunk: bool = False) -> GroupPath:
+    def _waist_path(self, costs: Floats32, follow: Guide | None = None, *, trunk: bool = False) -> _WaistPath:
         """The way of the waist, or of the `trunk` as one limb, on which the legs have room to crouch as it does."""
         at, postures = columns_of(DofGroup.WAIST), self.caches.group(DofGroup.WAIST).postures
         previous, closed = self.problem.previous[:, at], costs.copy()
@@ -353,11 +370,12 @@ class UpperBodySearch:
         crouch = Crouch(self.legs, self.path, lowerings, folds, lambda: self._shown)
         for attempt in range(ROUNDS):
             way = self._search(closed, follow, trunk=trunk)
-            if way.reached < self.path.horizon or not crouch.rules_out(way.keys, way.velocities, closed):
+            path = way.path
+            if path.reached < self.path.horizon or not crouch.rules_out(path.keys, path.velocities, closed):
                 if follow is None and attempt > 0:
                     self._crouching[np.isinf(closed)] = np.inf
                 return way
-        return way._replace(reached=0)
+        return way._replace(path=path._replace(reached=0))
 
     def _room_at_start(self, group: DofGroup, task: GroupTask, waist: GroupPath) -> float:
         """The clearance that may be asked of a group, half of what it has at the start; all if that is proven."""
@@ -373,10 +391,10 @@ class UpperBodySearch:
         clearance, _ = held_clearance(scratch, postures, task.start, places, turns, obstacles, HELD_AT_START)
         return max(0.5 * clearance, 0.0)
 
-    def _search(self, extra: Floats32, follow: Guide | None, *, trunk: bool) -> GroupPath:
+    def _search(self, extra: Floats32, follow: Guide | None, *, trunk: bool) -> _WaistPath:
         """The waist's way with `extra` (n+1, W+OWN) added to the prices of its nodes."""
-        task = self.problem.task(DofGroup.WAIST, self.problem.roots, extra, follow)
-        return self.evidence_log.search(DofGroup.WAIST, task, trunk=trunk)
+        task = self.problem.task(DofGroup.WAIST, self.problem.roots, extra.copy(), follow)
+        return _WaistPath(self.evidence_log.search(DofGroup.WAIST, task, trunk=trunk), task, trunk)
 
 
 class UpperPlan(NamedTuple):

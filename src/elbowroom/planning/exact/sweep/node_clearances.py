@@ -1,8 +1,11 @@
-"""The clearance of all postures of a group in one key interval, while the frame that carries them moves.
+"""The clearance of the postures of a group in one key interval, while the frame that carries them moves.
 
 A posture belongs to a key time, and stays there for half a key interval to either side: so each interval gives the
 postures of the key time before it an `early` row and those of the key time after it a `late` one, which looks at the
 key time itself too. The goal's own posture at these two key times rides along.
+
+Postures are looked at when somebody asks for them, a block of sixteen at a time: of those among meshes, where a look is
+dear, most are never asked for.
 """
 
 from typing import Any, NamedTuple
@@ -18,17 +21,20 @@ from elbowroom.planning.exact.sweep.motion_bounds import SWEEP
 from elbowroom.planning.exact.sweep.scratch import Scratch, held_against
 from elbowroom.planning.model.limb import pose_into
 from elbowroom.world.obstacles.blocks import least_of, lower_blocks_in
-from elbowroom.world.obstacles.layout import Nearby
+from elbowroom.world.obstacles.layout import TILE, Nearby
 from elbowroom.world.obstacles.rows import around, move_into
 
 Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
+Longs = NDArray[np.int64]
+Bools = NDArray[np.bool_]
 
 _MOMENTS = 4  # parts of an interval, at whose ends postures are looked at
 _STRIDE = SWEEP // _MOMENTS
 HELD_AT_START, HELD_EARLY, HELD_LATE = plain(0), plain(1), plain(2)  # parts of an interval
 _EARLY, _LATE = 2, 2  # up to this moment they belong to the key time before, from this one on to that after
 _FAR = np.float32(1e3)
+_NOTHING = np.float32(-1.0)  # the square of the radius of a ball that nothing is near to
 _ONE, _BOTH, _FIRST = plain(1), plain(2), plain(0)  # postures; place
 
 
@@ -37,8 +43,9 @@ class NodeClearances(NamedTuple):
     """Tables by interval; the key is the carrier's way and the goals at both ends."""
 
     entries: CacheIndex
-    early: Floats32  # (S, W + 1) clearance of every posture, then of the goal
+    early: Floats32  # (S, W + 1) clearance of every posture, then of the goal; more than any where none was looked at
     late: Floats32  # (S, W + 1)
+    seen: Bools  # (S, W/16 + 1) the blocks of postures that were looked at, then whether the goals were
 
 
 def new_node_clearances(count: int, size: int, width: int) -> NodeClearances:
@@ -47,39 +54,60 @@ def new_node_clearances(count: int, size: int, width: int) -> NodeClearances:
         new_cache_index(count, 1 + 2 * size),
         np.empty((count, width + 1), np.float32),
         np.empty((count, width + 1), np.float32),
+        np.empty((count, width // BLOCK + 1), np.bool_),
     )
 
 
 @helper
-def interval_clearances(
-    scratch: Scratch,
-    tables: NodeClearances,
-    postures: Postures,
-    carrier: int,
-    places: Floats,
-    turns: Floats,
-    goals: Floats,
-    obstacles: Nearby,
-) -> tuple[int, int]:
-    """The slot of the table of an interval, and the capsules that had to be checked for it.
+def interval_table(scratch: Scratch, tables: NodeClearances, carrier: int, goals: Floats) -> int:
+    """The slot of the table of an interval: what was looked at earlier is in it.
 
-    `carrier` is the number of the carrier's way, `places` (SWEEP+1, 3) and `turns` (SWEEP+1, 4) are its frames,
-    `goals` (2, d) those at the interval's ends, `obstacles` in the world.
+    `carrier` is the number of the carrier's way, `goals` (2, d) are those at the interval's ends.
     """
     size = goals.shape[1]
     key = scratch.key[: 1 + 2 * size]
     key[0] = carrier
     for i in range(size):
         key[1 + i], key[1 + size + i] = goals[0, i], goals[1, i]
-    known = find(tables.entries, key)
-    if known >= 0:
-        return int(known), 0
-    at = admit(tables.entries, key)
-    early, late = tables.early[at], tables.late[at]
-    checks = _moments(scratch, postures, places, turns, obstacles, early, late)
-    width = early.shape[0] - 1
-    early[width], late[width], count = _goals_held(scratch, postures, goals, places, turns, obstacles)
-    return int(at), checks + count
+    at = find(tables.entries, key)
+    if at < 0:
+        at = admit(tables.entries, key)
+        tables.early[at, :], tables.late[at, :] = _FAR, _FAR
+        tables.seen[at, :] = False
+    return int(at)
+
+
+@helper
+def look_at_nodes(
+    scratch: Scratch,
+    tables: NodeClearances,
+    at: int,
+    blocks: Longs,
+    postures: Postures,
+    carrier: tuple[Floats, Floats],
+    goals: Floats,
+    obstacles: Nearby,
+) -> int:
+    """Look at some blocks (K,) of an interval, the number after the last being that of the goals, if nobody has yet.
+
+    `at` is the slot of the interval's table, the `carrier` are its frames: places (SWEEP+1, 3), turns (SWEEP+1, 4);
+    `obstacles` are in the world. Returns the capsules that had to be checked.
+    """
+    early, late, seen, (places, turns) = tables.early[at], tables.late[at], tables.seen[at], carrier
+    width, count, checks = early.shape[0] - 1, 0, 0
+    unseen = np.empty(blocks.shape[0], np.int64)
+    for b in blocks:
+        if seen[b]:
+            continue
+        seen[b] = True
+        if b * BLOCK < width:
+            unseen[count] = b
+            count += 1
+        else:
+            early[width], late[width], checks = _goals_held(scratch, postures, goals, places, turns, obstacles)
+    if count > 0:
+        checks += _moments(scratch, postures, unseen[:count], places, turns, obstacles, early, late)
+    return checks
 
 
 @inner_exact_kernel
@@ -131,16 +159,20 @@ def _goals_held(
 def _moments(
     scratch: Scratch,
     postures: Postures,
+    blocks: Longs,
     places: Floats,
     turns: Floats,
     obstacles: Nearby,
     early: Floats32,
     late: Floats32,
 ) -> int:
-    """The clearance of all postures at the moments of an interval, into `early` and `late` (W+1,); checked capsules."""
-    rows, near, framed, reach, checks = scratch.blocks, scratch.near, scratch.framed, postures.reach, 0
-    within, tiles, spread = scratch.checks, scratch.tiles, scratch.spread
-    early[:], late[:] = _FAR, _FAR
+    """The clearance of some blocks (K,) of postures at the moments of an interval, into `early` and `late` (W+1,).
+
+    Returns the capsules that were checked.
+    """
+    near, framed, reach, checks = scratch.near, scratch.framed, postures.reach, 0
+    tiles, spread = _chosen(scratch, blocks)
+    rows, within = scratch.blocks[: blocks.shape[0]], scratch.checks
     for moment in range(1, _MOMENTS + 1):
         place, turn = places[moment * _STRIDE], turns[moment * _STRIDE]
         count = around(obstacles, place, reach, near)
@@ -151,17 +183,34 @@ def _moments(
         rows[:] = _FAR
         checks += lower_blocks_in(within, tiles, spread, framed, count, rows)
         if moment <= _EARLY:
-            _lower(early, rows)
+            _lower(early, blocks, rows)
         if moment >= _LATE:
-            _lower(late, rows)
+            _lower(late, blocks, rows)
     return checks
 
 
 @inner_exact_kernel
-def _lower(row: Floats32, blocks: Floats32) -> None:
-    """Lower the beginning of a row to what is in blocks (B, 16)."""
-    for b in range(blocks.shape[0]):
-        lanes, block = row[b * BLOCK : (b + 1) * BLOCK], blocks[b]
+def _chosen(scratch: Scratch, blocks: Longs) -> tuple[Floats32, Floats32]:
+    """The capsules of some blocks (K,) of postures, flat, and the balls around them, as `Scratch` has those of all."""
+    parts, count = scratch.segments.shape[0], blocks.shape[0] * scratch.segments.shape[0]
+    tiles = np.empty(count * TILE, np.float32)
+    spread = np.empty((scratch.spread.shape[0], (count + BLOCK - 1) // BLOCK * BLOCK), np.float32)
+    spread[:] = _NOTHING
+    for k in range(blocks.shape[0]):
+        for c in range(parts):
+            source, target = blocks[k] * parts + c, k * parts + c
+            for i in range(spread.shape[0]):
+                spread[i, target] = scratch.spread[i, source]
+            for i in range(np.uint64(TILE)):
+                tiles[target * TILE + i] = scratch.tiles[source * TILE + i]
+    return tiles, spread
+
+
+@inner_exact_kernel
+def _lower(row: Floats32, blocks: Longs, found: Floats32) -> None:
+    """Lower some blocks (K,) of a row to what was found for them (K, 16)."""
+    for k in range(blocks.shape[0]):
+        lanes, block = row[blocks[k] * BLOCK : (blocks[k] + 1) * BLOCK], found[k]
         for i in range(np.uint64(BLOCK)):
             lanes[i] = min(lanes[i], block[i])
 
