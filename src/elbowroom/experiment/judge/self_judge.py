@@ -1,16 +1,17 @@
 """A body against itself: arms against trunk, head, legs and each other, these against legs, by the other library.
 
 Capsules wrap the mesh generously, and some builds hold their arms against their sides. So what counts is how much
-deeper two parts are in each other than ever in the natural walk of this avatar; that is measured here, once, on poses
-of the judge's own. What a joint holds together is not looked at: parts of one arm, the trunk's parts, trunk and pelvis,
-and an upper arm against pelvis and trunk below the neck.
+deeper two parts are in each other than ever in the natural walk of this avatar, for upper arm and head also where it
+looks over a shoulder; that is measured here, once, on poses of the judge's own. What a joint holds together is not
+looked at: parts of one arm, the trunk's parts, trunk and pelvis, and an upper arm against pelvis and trunk below the
+neck.
 """
 
 import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.bones import SPINE
-from elbowroom.body.dof import ARMS, DOF, DofGroup
+from elbowroom.body.dof import ARMS, DOF, DofGroup, limits
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.made_once import made_once
 from elbowroom.body.root import ROOT_STATE
@@ -50,8 +51,14 @@ class SelfJudge:
         self._lengths = np.linalg.norm(humanoid.capsules.ends - humanoid.capsules.starts, axis=1)
         self._request = self._coal.DistanceRequest()
         natural = self._shapes.placed(_natural_poses(humanoid))
-        every = range(len(natural.turns))
-        self._natural = np.array([min(0.0, *(self._distance(natural, n, a, b) for n in every)) for a, b in self._pairs])
+        every, ahead = range(len(natural.turns)), range(len(natural.turns) // 3)
+        looks = [every if aside else ahead for aside in _shoulders(humanoid, self._pairs)]
+        self._natural = np.array(
+            [
+                min(0.0, *(self._distance(natural, n, a, b) for n in poses))
+                for (a, b), poses in zip(self._pairs, looks, strict=True)
+            ]
+        )
         self._natural[_creases(humanoid, self._pairs)] -= _CREASE
 
     def allowed(self) -> dict[tuple[int, int], float]:
@@ -132,12 +139,25 @@ def _creases(humanoid: Humanoid, pairs: NDArray[np.int64]) -> NDArray[np.bool_]:
     return creases
 
 
+def _shoulders(humanoid: Humanoid, pairs: NDArray[np.int64]) -> list[bool]:
+    """Which pairs (P, 2) are an upper arm and the head or neck: an arm can do nothing about a head that turns to it."""
+    bones = [humanoid.skeleton.names[joint] for joint in humanoid.capsules.joints]
+    groups = humanoid.capsules.groups
+    return [bones[one].endswith("UpperArm") and groups[other] is DofGroup.HEAD for one, other in pairs.tolist()]
+
+
 def _natural_poses(humanoid: Humanoid) -> Posed:
-    """The avatar standing and walking, at several speeds and phases of the stride."""
+    """The avatar standing and walking, at several speeds and phases of the stride.
+
+    In the first third it looks ahead, in the others as far as it can to either side.
+    """
     roots = np.zeros((len(_SPEEDS) * _PHASES, ROOT_STATE))
     roots[:, 3] = np.repeat(_SPEEDS, _PHASES)
     roots[:, 6] = np.tile(np.arange(_PHASES) / _PHASES, len(_SPEEDS))
     uppers = natural_walk()(RootPath(0.0, 1.0, roots))
-    q = np.concatenate([np.zeros((len(roots), DOF - uppers.shape[1])), uppers], axis=1)
+    ahead = np.concatenate([np.zeros((len(roots), DOF - uppers.shape[1])), uppers], axis=1)
+    q, turn = np.tile(ahead, (3, 1)), DofGroup.HEAD.at.start + 1
+    q[len(roots) :, turn] = np.repeat(limits(DofGroup.HEAD)[1], len(roots))
+    roots = np.tile(roots, (3, 1))
     poser = Poser(humanoid)
     return poser.world(*poser.local(q, roots), roots[:, :3])

@@ -2,7 +2,8 @@
 
 A pair of capsules may overlap by 2 cm, as capsules wrap the mesh generously and contact of their rims is no contact of
 bodies; or that much more than it does when the avatar stands and walks naturally, as some builds leave it no choice.
-So the natural walk is free for every avatar. Belly and thighs may overlap by 3.6 cm: they meet at the hips, where flesh
+So the natural walk is free for every avatar. An upper arm and the head may do what they do when it looks over a
+shoulder. Belly and thighs may overlap by 3.6 cm: they meet at the hips, where flesh
 gives. Not looked at is what a joint holds together: the parts of one arm, the parts of the trunk, the trunk against the
 pelvis, and an upper arm against the pelvis and the trunk below the neck, where its shoulder is rooted; who folds over
 the thighs can bring it to the legs.
@@ -13,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.body.dof import CHILDREN, DOF, LOCAL, SEARCH_ORDER, DofGroup, columns_of
+from elbowroom.body.dof import CHILDREN, DOF, LOCAL, SEARCH_ORDER, DofGroup, columns_of, limits
 from elbowroom.body.pose.kinematics import BodyModel, chest_frames, pelvis_frames, posture_capsules
 from elbowroom.body.root import ROOT_STATE
 from elbowroom.by_reference import by_reference
@@ -83,10 +84,16 @@ def self_pairs(model: BodyModel, goals: GoalFunction | None = None) -> SelfPairs
 
 
 def _allowed(model: BodyModel, natural: Floats32, group: DofGroup, other: DofGroup) -> Floats32:
-    """How near the axes of two groups may come to each other, (C, K) metres, for the natural walk (all, 6, N)."""
+    """How near the axes of two groups may come to each other, (C, K) metres, for the natural walk (all, 6, N).
+
+    Where a head turns to a shoulder the arm can do nothing about it; all else is measured where it looks ahead.
+    """
     one, two = model.capsules_of(group), model.capsules_of(other)
-    touching = one.radii[:, None] + two.radii
-    distances = np.array([[clear_pairs(natural[a], natural[b]).min() for b in two.indices] for a in one.indices])
+    touching, ahead = one.radii[:, None] + two.radii, natural[..., : natural.shape[2] // 3]
+    distances = np.array([[clear_pairs(ahead[a], ahead[b]).min() for b in two.indices] for a in one.indices])
+    if group.is_arm and other is DofGroup.HEAD:
+        shoulder = natural[one.indices[0]]
+        distances[0] = [clear_pairs(shoulder, natural[b]).min() for b in two.indices]
     least: Floats32 = (np.minimum(distances, touching) - OVERLAP).astype(np.float32)
     if group not in CHILDREN:
         least[:, two.joints == model.chains[group].start] = EXEMPT  # it is rooted there
@@ -98,11 +105,13 @@ def _allowed(model: BodyModel, natural: Floats32, group: DofGroup, other: DofGro
 
 
 def _natural_walk(model: BodyModel, goals: GoalFunction) -> Floats32:
-    """All capsules (C, 6, N) over strides at several speeds."""
+    """All capsules (C, 6, N) over strides at several speeds; the first third looks ahead, the others to either side."""
     states = np.zeros((len(_SPEEDS) * _PHASES, ROOT_STATE))
     states[:, 3] = np.repeat(_SPEEDS, _PHASES)
     states[:, 6] = np.tile(np.arange(_PHASES) / _PHASES, len(_SPEEDS))
-    return posture_capsules(model, _postures(goals(RootPath(0.0, 1.0, states))), states)
+    uppers, turn = np.tile(goals(RootPath(0.0, 1.0, states)), (3, 1)), columns_of(DofGroup.HEAD).start + 1
+    uppers[len(states) :, turn] = np.repeat(limits(DofGroup.HEAD)[1], len(states))
+    return posture_capsules(model, _postures(uppers), np.tile(states, (3, 1)))
 
 
 def _postures(uppers: Floats) -> Floats:
