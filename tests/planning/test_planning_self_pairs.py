@@ -1,5 +1,6 @@
 """A body against itself: tables against coal and against one pair after the other, the natural walk free for anyone."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import coal
@@ -170,6 +171,16 @@ def test_an_arm_beside_the_face_is_free_or_not_by_where_the_head_turns() -> None
         free.append(self_clearances(model, self_pairs(model), np.zeros((2000, 7)), uppers).min(axis=0) >= 0.0)
     assert np.sum(free[0] & ~free[1]) > 5
     assert np.sum(free[1] & ~free[0]) > 5
+
+
+def test_who_has_a_broad_head_may_look_over_a_shoulder_with_any_arm() -> None:
+    humanoid = proportional_humanoid(1.72)
+    capsules = humanoid.capsules
+    broad = np.where([name == "head" for name in capsules.names], 1.5, 1.0)
+    model = body_model(replace(humanoid, capsules=replace(capsules, radii=broad * capsules.radii)))
+    looking = np.tile(natural_walk()(RootPath(0.0, 1.0, np.zeros((1, 7)))), (3, 1))
+    looking[:, columns_of(DofGroup.HEAD).start + 1] = 0.0, *limits(DofGroup.HEAD)[1]
+    assert (self_clearances(model, self_pairs(model), np.zeros((3, 7)), looking) >= 0.0).all()
 
 
 @pytest.mark.parametrize("forward", [0.0, 0.5, 1.1, -0.7])

@@ -89,7 +89,8 @@ def _allowed(model: BodyModel, natural: Floats32, group: DofGroup, other: DofGro
     Where a head turns to a shoulder the arm can do nothing about it; all else is measured where it looks ahead.
     """
     one, two = model.capsules_of(group), model.capsules_of(other)
-    touching, ahead = one.radii[:, None] + two.radii, natural[..., : natural.shape[2] // 3]
+    touching = one.radii[:, None] + two.radii
+    ahead = np.ascontiguousarray(natural[..., : natural.shape[2] // 3])
     distances = np.array([[clear_pairs(ahead[a], ahead[b]).min() for b in two.indices] for a in one.indices])
     if group.is_arm and other is DofGroup.HEAD:
         shoulder = natural[one.indices[0]]

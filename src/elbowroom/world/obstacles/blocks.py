@@ -20,6 +20,7 @@ _PER_METRE: Any = np.float32(PER_METRE)
 _NONE = plain(0)
 _PAIRS = 512  # pairs of a tile and an obstacle that are collected before they are checked
 _FAR = np.float32(np.inf)
+_NO_BALL = np.float32(-1.0)  # the square of a radius to which nothing is near
 _ZERO = np.float32(0.0)
 _QUARTER = np.float32(0.25)
 _LAST = LANES - 1
@@ -70,6 +71,22 @@ def spread_balls(balls: Floats, out: Floats32) -> None:
             t += 1
     for t in range(total, (total + LANES - 1) // LANES * LANES):
         out[0, t], out[1, t], out[2, t], out[3, t] = 0.0, 0.0, 0.0, -1.0
+
+
+@inner_exact_kernel
+def some_blocks(tiles: Floats32, balls: Floats32, parts: int, blocks: Longs) -> tuple[Floats32, Floats32]:
+    """Some blocks (K,) of those in flat `tiles`, of so many parts each, and their `balls`, spread as of all."""
+    count = blocks.shape[0] * parts
+    own, spread = np.empty(count * TILE, np.float32), np.empty((5, (count + LANES - 1) // LANES * LANES), np.float32)
+    spread[:] = _NO_BALL
+    for k in range(blocks.shape[0]):
+        for c in range(parts):
+            source, target = blocks[k] * parts + c, k * parts + c
+            for i in range(4):
+                spread[i, target] = balls[i, source]
+            for i in range(np.uint64(TILE)):
+                own[target * TILE + i] = tiles[source * TILE + i]
+    return own, spread
 
 
 @inner_kernel

@@ -162,7 +162,7 @@ def _looked_at(looks: Looks, nodes: NodeCosts, path: Longs, whole: Bools) -> tup
     changed, checks, width = np.zeros(goals.shape[0], np.bool_), 0, postures.columns.shape[1]
     asked = np.empty(known.seen.shape[1], np.int64)
     for k in range(nodes.tables.shape[0]):
-        blocks = asked[: _asked(path, k, whole[k], nodes.blocks[k], asked)]
+        blocks = asked[: _new_blocks(path, k, whole[k], nodes.blocks[k], asked)]
         if blocks.shape[0] > 0:
             at, carrier, near = nodes.tables[k], (carriers.places[k], carriers.turns[k]), at_span(obstacles, k)
             checks += look_at_nodes(scratch, known, at, blocks, postures, carrier, goals[k : k + 2], near)
@@ -181,7 +181,7 @@ def _looked_at(looks: Looks, nodes: NodeCosts, path: Longs, whole: Bools) -> tup
 
 
 @inner_exact_kernel
-def _asked(path: Longs, k: int, whole: bool, blocks: Bools, out: Longs) -> int:
+def _new_blocks(path: Longs, k: int, whole: bool, blocks: Bools, out: Longs) -> int:
     """Write to `out` which blocks of an interval a path (n+1,) leads through, or all if it is `whole`; how many.
 
     Only those that were not looked at, as `blocks` (W/16 + 1,) tells, in which they are noted now.

@@ -20,8 +20,8 @@ from elbowroom.planning.exact.memory.cache_index import CacheIndex, admit, find,
 from elbowroom.planning.exact.sweep.motion_bounds import SWEEP
 from elbowroom.planning.exact.sweep.scratch import Scratch, held_against
 from elbowroom.planning.model.limb import pose_into
-from elbowroom.world.obstacles.blocks import least_of, lower_blocks_in
-from elbowroom.world.obstacles.layout import TILE, Nearby
+from elbowroom.world.obstacles.blocks import least_of, lower_blocks_in, some_blocks
+from elbowroom.world.obstacles.layout import Nearby
 from elbowroom.world.obstacles.rows import around, move_into
 
 Floats = NDArray[np.float64]
@@ -34,7 +34,6 @@ _STRIDE = SWEEP // _MOMENTS
 HELD_AT_START, HELD_EARLY, HELD_LATE = plain(0), plain(1), plain(2)  # parts of an interval
 _EARLY, _LATE = 2, 2  # up to this moment they belong to the key time before, from this one on to that after
 _FAR = np.float32(1e3)
-_NOTHING = np.float32(-1.0)  # the square of the radius of a ball that nothing is near to
 _ONE, _BOTH, _FIRST = plain(1), plain(2), plain(0)  # postures; place
 
 
@@ -171,7 +170,7 @@ def _moments(
     Returns the capsules that were checked.
     """
     near, framed, reach, checks = scratch.near, scratch.framed, postures.reach, 0
-    tiles, spread = _chosen(scratch, blocks)
+    tiles, spread = some_blocks(scratch.tiles, scratch.spread, scratch.segments.shape[0], blocks)
     rows, within = scratch.blocks[: blocks.shape[0]], scratch.checks
     for moment in range(1, _MOMENTS + 1):
         place, turn = places[moment * _STRIDE], turns[moment * _STRIDE]
@@ -187,23 +186,6 @@ def _moments(
         if moment >= _LATE:
             _lower(late, blocks, rows)
     return checks
-
-
-@inner_exact_kernel
-def _chosen(scratch: Scratch, blocks: Longs) -> tuple[Floats32, Floats32]:
-    """The capsules of some blocks (K,) of postures, flat, and the balls around them, as `Scratch` has those of all."""
-    parts, count = scratch.segments.shape[0], blocks.shape[0] * scratch.segments.shape[0]
-    tiles = np.empty(count * TILE, np.float32)
-    spread = np.empty((scratch.spread.shape[0], (count + BLOCK - 1) // BLOCK * BLOCK), np.float32)
-    spread[:] = _NOTHING
-    for k in range(blocks.shape[0]):
-        for c in range(parts):
-            source, target = blocks[k] * parts + c, k * parts + c
-            for i in range(spread.shape[0]):
-                spread[i, target] = scratch.spread[i, source]
-            for i in range(np.uint64(TILE)):
-                tiles[target * TILE + i] = scratch.tiles[source * TILE + i]
-    return tiles, spread
 
 
 @inner_exact_kernel
