@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import trimesh
+from numpy.typing import NDArray
 
 from elbowroom.errors import InputError
 from elbowroom.formats.gltf import parse_gltf
@@ -88,6 +89,33 @@ def test_words_and_lines_of_an_obj_are_apart_by_whatever_is_usual(before: str, a
 
 def _bytes(data: bytes | str) -> bytes:
     return data.encode() if isinstance(data, str) else data
+
+
+def areas(found: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Those of triangles (T, 3, 3)."""
+    sides = np.cross(found[:, 1] - found[:, 0], found[:, 2] - found[:, 0])
+    found_areas: NDArray[np.float64] = 0.5 * np.linalg.norm(sides, axis=1)
+    return found_areas
+
+
+@pytest.mark.parametrize("first", range(6))
+@pytest.mark.parametrize("corner", ["{0}", "{0}/1", "{0}//1", "-{1}"])
+def test_a_floor_of_an_obj_with_a_corner_that_is_left_out_covers_no_more_than_itself(first: int, corner: str) -> None:
+    ring = [(0, 0), (4, 0), (4, 3), (2, 3), (2, 1), (0, 1)]  # 8 square metres of 12
+    order = np.roll(np.arange(6), first)
+    file = ["vt 0 0", "vn 0 1 0", *(f"v {x} 0 {z}" for x, z in ring), "v 9 0 0", "v 9 0 1", "v 8 0 0"]
+    file += ["f " + " ".join(corner.format(n + 1, 9 - n) for n in order), "f 7 8 9"]
+    found = triangles(parse_model("\n".join(file).encode(), "a.obj"))
+    assert len(found) == 5
+    assert areas(found).sum() == pytest.approx(8.0 + 0.5)
+    middles = found.mean(axis=1)
+    assert not np.any((middles[:, 0] < 2.0) & (middles[:, 2] > 1.0))
+
+
+def test_a_face_of_four_corners_may_have_a_dent(tmp_path: Path) -> None:
+    (tmp_path / "a.obj").write_text("v 0 0 0\nv 3 0 0\nv 1 0 1\nv 0 0 3\nf 2 3 4 1\nf 4 1 2 3\nf 1 2 3\n")
+    found = triangles(read_model(tmp_path / "a.obj"))
+    assert areas(found).sum() == pytest.approx(2 * 3.0 + 1.5)
 
 
 def test_an_obj_keeps_the_names_of_its_objects_and_its_colours(tmp_path: Path) -> None:

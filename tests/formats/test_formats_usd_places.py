@@ -118,6 +118,18 @@ def test_faces_of_any_number_of_corners_and_holes(tmp_path: Path) -> None:
     assert place.triangles == 4 + 2
 
 
+def test_a_face_with_a_dent_covers_no_more_than_itself(tmp_path: Path) -> None:
+    ring = [[0, 0, 0], [4, 0, 0], [4, 0, 3], [2, 0, 3], [2, 0, 1], [0, 0, 1]]
+
+    def make(stage: Any) -> None:
+        mesh(stage, "/A", [6, 3], [4, 5, 0, 1, 2, 3, 0, 1, 2], ring)
+
+    place = parse_place(written(tmp_path, make), "a.usda", PlaceOptions(scale=1.0))
+    corners = place.parts[0].vertices[place.parts[0].faces]
+    sides = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    assert 0.5 * np.linalg.norm(sides, axis=1).sum() == pytest.approx(8.0 + 6.0)
+
+
 @pytest.mark.parametrize(
     ("counts", "corners", "said"),
     [

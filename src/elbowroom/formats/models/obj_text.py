@@ -1,7 +1,12 @@
-"""OBJ as trimesh takes it: words apart by blanks, lines by line feeds, and corners of faces counted from the front."""
+"""OBJ as trimesh takes it: words apart by blanks, lines by line feeds, corners of faces counted from the front.
+
+Faces have no dents.
+"""
 
 import re
 from collections.abc import Iterable
+
+from elbowroom.formats.models.obj_polygons import without_dents
 
 # Corners may count back from where the face stands; none is called 0, which trimesh would take for the last.
 _BACK_OR_NONE = re.compile(rb"^ *[fl](?: .*)?(?:[ /]-\d| 0(?:[ /]|$))", re.MULTILINE)
@@ -13,7 +18,7 @@ def plain_obj(data: bytes) -> bytes:
     """The same file, plainer. An index that leads to nothing becomes one that nothing has."""
     data = data.replace(b"\t", b" ").replace(b"\r\n", b"\n").replace(b"\r", b"\n")
     if not _BACK_OR_NONE.search(data):
-        return data
+        return without_dents(data)
     told, lines = dict.fromkeys(_KINDS, 0), []
     for line in data.replace(b"\\\n", b" ").split(b"\n"):
         words = line.split()
@@ -24,7 +29,7 @@ def plain_obj(data: bytes) -> bytes:
         if words and words[0] in told:
             told[words[0]] += 1
         lines.append(line)
-    return b"\n".join(lines)
+    return without_dents(b"\n".join(lines))
 
 
 def _corner(word: bytes, counts: Iterable[int]) -> bytes:

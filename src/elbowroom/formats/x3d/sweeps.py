@@ -4,9 +4,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.errors import InputError
+from elbowroom.formats.polygons import ears
 from elbowroom.formats.x3d.mesh import Corners, Mesh, assembled, creased_normals
 from elbowroom.formats.x3d.model import Node
-from elbowroom.formats.x3d.polygons import ears
 from elbowroom.geometry import quaternion
 
 Floats = NDArray[np.float64]

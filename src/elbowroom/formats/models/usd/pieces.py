@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.errors import InputError
+from elbowroom.formats.polygons import ears
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -111,19 +112,14 @@ def _mesh(prim: Any, name: str) -> tuple[Floats, Ints]:
     if len(corners) and not (corners.min() >= 0 and corners.max() < len(points)):
         raise InputError(f"{where}: a face names a point that is not there")
     counts[holes[(holes >= 0) & (holes < len(counts))]] *= -1  # a face that is a hole
-    return points, _fans(counts, corners)
+    return points, _triangles(points, counts, corners)
 
 
-def _fans(counts: Ints, corners: Ints) -> Ints:
+def _triangles(points: Floats, counts: Ints, corners: Ints) -> Ints:
     """Triangles (F, 3) of faces with so many corners, one after the other; none of those whose count is negative."""
-    firsts = np.cumsum(np.abs(counts)) - np.abs(counts)
-    triangles = [np.zeros((0, 3), np.int64)]
-    for many in np.unique(counts[counts >= 3]):
-        face = corners[firsts[counts == many][:, None] + np.arange(many)]
-        steps = np.arange(1, many - 1)
-        fan = np.stack([np.broadcast_to(face[:, :1], (len(face), many - 2)), face[:, steps], face[:, steps + 1]], 2)
-        triangles.append(fan.reshape(-1, 3))
-    return np.concatenate(triangles)
+    firsts, many = np.cumsum(np.abs(counts)) - np.abs(counts), counts >= 3
+    places, _ = ears(points, corners, firsts[many], counts[many])
+    return corners[places]
 
 
 def _solid(prim: Any) -> tuple[Floats, Ints]:

@@ -31,11 +31,11 @@ def fans(starts: Ints, sizes: Ints) -> tuple[Ints, Ints]:
 def ears(points: Floats, index: Ints, starts: Ints, sizes: Ints) -> tuple[Ints, Ints]:
     """As `fans`, for polygons that may have dents."""
     triangles, polygon = fans(starts, sizes)
-    dented = _dented(points, index, starts, sizes, triangles, polygon)
-    kept = [triangles[~dented[polygon]]]
-    owners = [polygon[~dented[polygon]]]
+    bent = dented(points, index, starts, sizes)
+    kept = [triangles[~bent[polygon]]]
+    owners = [polygon[~bent[polygon]]]
     work = 0
-    for number in map(int, np.flatnonzero(dented)):
+    for number in map(int, np.flatnonzero(bent)):
         size = int(sizes[number])
         places = np.arange(starts[number], starts[number] + size)
         work += size * size
@@ -48,10 +48,9 @@ def ears(points: Floats, index: Ints, starts: Ints, sizes: Ints) -> tuple[Ints, 
     return np.concatenate(kept), np.concatenate(owners)
 
 
-def _dented(
-    points: Floats, index: Ints, starts: Ints, sizes: Ints, triangles: Ints, polygon: Ints
-) -> NDArray[np.bool_]:
-    """The polygons whose fan has a triangle that faces the other way."""
+def dented(points: Floats, index: Ints, starts: Ints, sizes: Ints) -> NDArray[np.bool_]:
+    """The polygons (P,) whose fan has a triangle that faces the other way."""
+    triangles, polygon = fans(starts, sizes)
     corner = points[index[triangles]]
     normals = np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0])
     whole = np.stack([np.bincount(polygon, normals[:, k], len(starts)) for k in range(3)], axis=1)
