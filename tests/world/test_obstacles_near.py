@@ -5,6 +5,7 @@ import pytest
 from numpy.typing import NDArray
 
 from elbowroom.geometry import quaternion
+from elbowroom.world.obstacles.around_body import clearances_around
 from elbowroom.world.obstacles.broad_phase import grids_of, meeting
 from elbowroom.world.obstacles.clearance import clearance_of, pairwise_clearance
 from elbowroom.world.obstacles.obstacles import Obstacles
@@ -74,25 +75,26 @@ def test_each_capsule_of_a_body_is_as_far_as_is_said_or_farther() -> None:
     rng, exact, left_out = np.random.default_rng(4), 0, 0
     obstacles = many(rng)
     for _ in range(200):
-        origin, time = np.array([300.0, -200.0]) + rng.uniform(-12.0, 12.0, 2), float(rng.uniform(0.0, 12.0))
+        x, z = np.array([300.0, -200.0]) + rng.uniform(-12.0, 12.0, 2)
         starts = rng.uniform([-0.5, 0.0, -0.5], [0.5, 1.8, 0.5], (4, 3))
-        axes = np.concatenate([starts, starts + rng.uniform(-0.4, 0.4, (4, 3))], axis=1).astype(np.float32)
+        axes = np.concatenate([starts, starts + rng.uniform(-0.4, 0.4, (4, 3))], axis=1).astype(np.float32)[:, :, None]
         radii = rng.uniform(0.03, 0.1, 4).astype(np.float32)
         floors = rng.choice([-np.inf, *rng.uniform(0.0, 1.5, 2)], 4)
-        found = obstacles.clearances(axes[:, :, None], radii, origin, time, floors)
-        gaps = pairwise_clearance(axes[:, :, None], radii, about(obstacles.at(time), origin[0], origin[1]))[:, :, 0]
-        tops = np.append(bounds_of(obstacles.standing)[1][:, 1], np.inf)  # the one that moves counts anyhow
+        found = clearances_around(obstacles.about_bodies, axes, radii, x, z, floors, np.inf)
+        gaps = pairwise_clearance(axes, radii, about(obstacles.standing, x, z))[:, :, 0]
+        tops = bounds_of(obstacles.standing)[1][:, 1]
         expected = np.where(tops > floors[:, None], gaps, np.inf).min(axis=1)
         assert np.all(found <= expected + 1e-6)
         assert found.min() == pytest.approx(expected.min(), abs=1e-6)
         near = expected < 0.4
         np.testing.assert_allclose(found[near], expected[near], atol=1e-6)
-        capped = obstacles.clearances(axes[:, :, None], radii, origin, time, floors, 0.1)
+        capped = clearances_around(obstacles.about_bodies, axes, radii, x, z, floors, 0.1)
         np.testing.assert_allclose(np.minimum(capped, 0.1), np.minimum(expected, 0.1), atol=1e-6)
         exact, left_out = exact + int(near.sum()), left_out + int((gaps.min(axis=1) < expected).sum())
     assert exact > 10
     assert left_out > 10
-    assert np.isposinf(Obstacles().clearances(axes[:, :, None], radii, origin, 0.0, np.zeros(4))).all()
+    nothing = Obstacles().about_bodies
+    assert np.isposinf(clearances_around(nothing, axes, radii, 0.0, 0.0, np.zeros(4), np.inf)).all()
 
 
 def test_nothing_is_infinitely_far() -> None:

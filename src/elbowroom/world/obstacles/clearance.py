@@ -61,14 +61,6 @@ def clearance_from_each(segments: ArrayLike, radii: ArrayLike, near: Nearby) -> 
     return out
 
 
-def clearance_from_all(segments: ArrayLike, radii: ArrayLike, near: Nearby) -> Floats32:
-    """The clearance of each capsule of one posture, `segments` (C, 6), from the nearest obstacle, metres, (C,)."""
-    lanes = np.ascontiguousarray(np.asarray(segments, np.float32).T)
-    out = np.full(lanes.shape[1], np.inf, np.float32)
-    clearance_of_each(lanes, np.ascontiguousarray(radii, np.float32), near, out)
-    return out
-
-
 def pairwise_clearance(segments: ArrayLike, radii: ArrayLike, near: Nearby) -> Floats32:
     """The clearance of every capsule from every obstacle in every configuration, metres, shape (C, B, N)."""
     capsules, sizes = _prepared(segments, radii)

@@ -9,11 +9,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from elbowroom.geometry import quaternion
-from elbowroom.world.obstacles.around_body import Standing, clearances_around
+from elbowroom.world.obstacles.around_body import Standing
 from elbowroom.world.obstacles.broad_phase import Grids, grids_of, meeting
 from elbowroom.world.obstacles.clearance import (
     clearance,
-    clearance_from_all,
     clearance_from_each,
     clearance_of,
     pairwise_clearance,
@@ -215,20 +214,6 @@ class Obstacles:
             if found <= reach:
                 break
         return float(found)
-
-    def clearances(
-        self, segments: Floats32, radii: Floats32, origin: Floats, time: float, floors: Floats, farthest: float = np.inf
-    ) -> Floats32:
-        """`clearance` of each capsule (C, 6, 1) of one posture, (C,): of the nearest; of others at least so much.
-
-        Of what stands, that which rises above a height of each capsule's own, the `floors` (C,). More than `farthest`
-        metres of that are not told apart.
-        """
-        found = clearances_around(self.about_bodies, segments, radii, origin[0], origin[1], floors, farthest)
-        if len(self.moving):
-            moved = about(self.moving.at(time, self._movers), float(origin[0]), float(origin[1]))
-            found = np.minimum(found, clearance_from_all(segments[:, :, 0], radii, moved))
-        return found
 
     def nearest(
         self, segments: ArrayLike, radii: ArrayLike, origin: Sequence[float] | Floats, time: float

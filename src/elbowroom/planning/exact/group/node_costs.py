@@ -1,9 +1,10 @@
 """What the nodes of a group's lattice cost: how far each is from its goal, and how near to an obstacle.
 
 To see how near is dear, above all among meshes, and through most nodes no path leads: they are too far from the goal.
-So at first it is known what nodes cost where nothing is near, which is never too much, and what earlier plans saw. The
-cheapest path is looked at node by node; where that makes it dearer, the cheapest is sought again. A path whose nodes
-have all been looked at, and that is still the cheapest, is the one that would be found had all been looked at.
+So at first nodes cost what they do where nothing is near, which is never too much. The cheapest path is looked at node
+by node; where that makes it dearer, the cheapest is sought again. A path whose nodes have all been looked at, and that
+is still the cheapest, is the one that would be found had all been looked at. What earlier plans saw saves looks, and
+changes nothing else.
 """
 
 from typing import Any, NamedTuple
@@ -137,22 +138,21 @@ def _price(cost: Floats32, away: Floats32, added: Floats32, clear: Floats32, mar
 
 
 @helper
-def look(looks: Looks, nodes: NodeCosts, path: Longs, whole: Bools, weights: Weights) -> tuple[int, int]:
+def look(looks: Looks, nodes: NodeCosts, path: Longs, whole: Bools, weights: Weights) -> tuple[int, bool, int]:
     """Look at the nodes of a path (n+1,), if it is not empty, and at all nodes of intervals that are `whole` (n,).
 
-    Returns the first key time at which a node may cost more than was known, the number of key times if none does, or if
-    it is not one of the path. Also the capsules checked.
+    Returns the first key time at which a node may cost more than was known, the number of key times if none does;
+    whether one of the path does; and the capsules checked.
     """
     changed, checks = _looked_at(looks, nodes, path, whole)
-    count, dearer = changed.shape[0], path.shape[0] == 0
-    first = count
-    for t in range(count - 1, -1, -1):
+    first, dearer = changed.shape[0], False
+    for t in range(first - 1, -1, -1):
         if changed[t]:
-            before = _NOTHING if dearer else nodes.cost[t, path[t]]
+            before = nodes.cost[t, path[t]] if path.shape[0] > 0 else _NOTHING
             _price(nodes.cost[t], nodes.away[t], nodes.added[t], nodes.clear[t], nodes.margins[t], weights)
-            dearer = dearer or nodes.cost[t, path[t]] > before
+            dearer = dearer or (path.shape[0] > 0 and nodes.cost[t, path[t]] > before)
             first = t
-    return first if dearer else count, checks
+    return first, dearer, checks
 
 
 @helper

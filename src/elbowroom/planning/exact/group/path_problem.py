@@ -85,7 +85,6 @@ class PathProblem(NamedTuple):
             self.path.interval,
             begins.harsh,
             begins.ahead > 0,
-            whole=False,
         )
 
 

@@ -204,35 +204,37 @@ def _begun(
 @helper
 def _cheapest(
     lattice: Lattice, work: Work, looks: Looks, nodes: NodeCosts, weights: Weights, first: int, narrow: bool
-) -> tuple[int, Longs, int, int]:
-    """The greatest depth that is reached, the nodes of the cheapest path to there, all of which have been looked at.
+) -> tuple[int, Longs, int, int, int]:
+    """The greatest depth that is reached, and the nodes of the cheapest path to there, all of which were looked at.
 
-    It is sought from the depth `first` on, narrowly if that is enough. Also the nodes settled and the capsules checked.
+    It is sought from the depth `first` on, narrowly if that is enough. Also the first depth from which on other nodes
+    have grown dearer since they were settled, the nodes settled, and the capsules checked.
     """
     settled, checks, last, looked, whole = 0, 0, nodes.tables.shape[0], 0, np.zeros(nodes.tables.shape, np.bool_)
     while True:
         reached, count = cheapest_path(lattice, work, first, narrow)
         path, settled = traced(lattice, work, reached), settled + count
         whole[:] = reached < last or looked >= _LOOKS
-        first, count = look(looks, nodes, path[:0] if reached < last else path, whole, weights)
+        changed, dearer, count = look(looks, nodes, path[:0] if reached < last else path, whole, weights)
         checks, looked = checks + count, looked + 1
-        if first > last:
-            return reached, path, settled, checks
-        first = _BEGIN if narrow else min(max(first - 1, _BEGIN), reached)
+        if changed > last or (reached == last and not dearer):
+            return reached, path, max(changed - 1, _BEGIN), settled, checks
+        first = _BEGIN if narrow else min(max(changed - 1, _BEGIN), reached)
 
 
 @helper
 def _settled(
-    lattice: Lattice, work: Work, looks: Looks, nodes: NodeCosts, weights: Weights, whole: Bools
+    lattice: Lattice, work: Work, looks: Looks, nodes: NodeCosts, weights: Weights, whole: Bools, stale: int
 ) -> tuple[int, int]:
-    """Look at all nodes of some intervals (n,), and settle those too that a narrow search left out.
+    """Look at all nodes of some intervals (n,); settle what is not: from `stale` on, or left out by a narrow search.
 
     Returns the nodes settled and the capsules checked.
     """
-    first, checks = look(looks, nodes, nodes.tables[:0], whole, weights)
-    if first >= nodes.cost.shape[0]:
+    changed, _, checks = look(looks, nodes, nodes.tables[:0], whole, weights)
+    begin, last = min(max(changed - 1, _BEGIN), stale), nodes.tables.shape[0]
+    if begin >= last:
         return widen(lattice, work), checks
-    _, settled = cheapest_path(lattice, work, max(first - 1, _BEGIN), _WIDELY)
+    _, settled = cheapest_path(lattice, work, begin, _WIDELY)
     return settled, checks
 
 
@@ -248,13 +250,13 @@ def search_group(scratch: Scratch, cache: GroupCache, task: GroupTask, weights: 
     work, edges = new_work(horizon + 1, row), new_closed_edges(horizon, row)
     question, lattice, looks, nodes, most, checks = _begun(scratch, cache, task, weights, edges)
     if task.whole:
-        checks += look(looks, nodes, nodes.tables[:0], np.ones(horizon, np.bool_), weights)[1]
+        checks += look(looks, nodes, nodes.tables[:0], np.ones(horizon, np.bool_), weights)[2]
     entries = np.empty(horizon, np.int64)
     touches, stiff = np.zeros(horizon, np.bool_), np.empty(horizon + 1, np.bool_)
     first, deepest, spent, settled, gentle, harsh = _BEGIN, 0, most_rounds, 0, _GENTLY, False
     keys, tangents = np.empty(goals.shape), np.empty(goals.shape)
     for rounds in range(most_rounds):
-        reached, path, count, more = _cheapest(lattice, work, looks, nodes, weights, first, rounds == 0)
+        reached, path, stale, count, more = _cheapest(lattice, work, looks, nodes, weights, first, rounds == 0)
         settled, checks = settled + count, checks + more
         keys_into(lattice, path, keys)
         if reached < horizon and gentle and harsh and may_be_harsh:
@@ -275,7 +277,7 @@ def search_group(scratch: Scratch, cache: GroupCache, task: GroupTask, weights: 
             deepest, spent = horizon, rounds + 1
             break
         looked_at = _near_to(touches, 1 << rounds)
-        count, more = _settled(lattice, work, looks, nodes, weights, looked_at)
+        count, more = _settled(lattice, work, looks, nodes, weights, looked_at, stale)
         settled, checks = settled + count, checks + more
         edges = with_tables(edges, looked_at)
         lattice = _closing(lattice, edges)
