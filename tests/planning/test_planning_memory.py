@@ -113,7 +113,7 @@ def test_one_more_walker_costs_little(humanoid: Humanoid) -> None:
     crowd += [walked() for _ in range(4)]
     own = (tracemalloc.get_traced_memory()[0] - before) / 4
     tracemalloc.stop()
-    assert own < 1.6e6
+    assert own < 1.2e6
 
 
 def test_added_postures_belong_to_who_added_them(humanoid: Humanoid) -> None:

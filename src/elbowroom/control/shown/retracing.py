@@ -15,6 +15,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from elbowroom.body.dof import LOCAL
 from elbowroom.body.gait.carriage import POSING
 from elbowroom.body.gait.foot_state import SWING
 from elbowroom.body.root import FOOT, HEIGHT, RISES, ROOT_STATE, WITH_FEET
@@ -40,12 +41,13 @@ _POSED = np.r_[
     WITH_FEET : WITH_FEET + POSING,
 ]  # of a root state as it is shown, what poses the body
 _ARMS = 1.5  # rad/s, metres a second: how fast arms go straight to where they were
+_AT_REST = np.zeros(LOCAL)  # the velocity of an upper body as it is remembered: it is shown again pose by pose
 
 
 class Past(NamedTuple):
     """What was shown."""
 
-    pose: Playback
+    pose: Playback  # at rest where it is remembered
     seconds: float  # for how long
     joined: bool = True  # whether what is remembered next was shown next
 
@@ -84,9 +86,10 @@ class Retracing:
         """Remember what was shown; of who stays on the spot, how he came there and what he has shown last."""
         if self._here and not _stand_alike(self._trail[-self._here].pose, past.pose):
             self._here, self._dithered = 0, 0.0
-        self._trail.append(past)
-        self._length += past.seconds
-        self._here, self._dithered = self._here + 1, self._dithered + past.seconds
+        (root, upper, _), seconds, joined = past
+        self._trail.append(Past(Playback(root, upper, _AT_REST), seconds, joined))
+        self._length += seconds
+        self._here, self._dithered = self._here + 1, self._dithered + seconds
         while self._dithered > _DITHERED and self._here > 2:
             arrival = len(self._trail) - self._here
             self._trail[arrival] = self._trail[arrival]._replace(joined=False)
@@ -159,7 +162,7 @@ class Retracing:
         for step in range(steps):
             part = step / steps
             root, upper = (old + part * (new - old) for old, new in zip(to.pose[:2], shown[:2], strict=True))
-            self._trail.append(Past(Playback(root, upper, np.zeros_like(upper)), dt))
+            self._trail.append(Past(Playback(root, upper, _AT_REST), dt))
             self._length += dt
         return self._trail[-1]
 

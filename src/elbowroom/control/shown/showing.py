@@ -126,7 +126,7 @@ class Showing:
         elif not before.joined:
             self._retracing.forget()
             return
-        posed = before.pose._replace(upper_velocity=np.zeros_like(before.pose.upper))
+        posed = before.pose
         clearance = self._clearance_of(posed.root, posed.upper)
         if self._around.check.accompanied and not self._touches_nothing(posed, clearance, self._frames_to(posed)):
             self._retracing.give_up()

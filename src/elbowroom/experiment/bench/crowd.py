@@ -57,11 +57,12 @@ def run(settings: CrowdSettings, tick: Callable[[int], None] = lambda _: None) -
     """Measure crowds of each size that walk in the open, walk scene D, and stand."""
     humanoid = Humanoid.default()
     costs: list[CrowdCost] = []
-    for what, (scene, command) in _KINDS.items():
-        first = _made(humanoid, Scene.load(scene), 1)  # what all of them share is made, and stays
+    for what, (name, command) in _KINDS.items():
+        scene = Scene.load(name)
+        first = _made(humanoid, scene, 1)  # what all of them share is made, and stays: the maps of the scene too
         _walk(first, command, RATE)
         for count in settings.avatars:
-            costs.append(_cost(what, humanoid, Scene.load(scene), count, command, settings))
+            costs.append(_cost(what, humanoid, scene, count, command, settings))
             tick(len(costs))
     return CrowdReport(settings, tuple(costs))
 

@@ -26,6 +26,7 @@ from elbowroom.planning.exact.sweep.own_motion import OwnMotion, parts_of
 from elbowroom.planning.model.footing import Underfoot
 
 _CACHED = 5  # times the horizon: as many results of key intervals are remembered
+_TABLES = 2  # times the horizon: the same of tables of postures, which are large and seldom asked for again later
 
 
 @by_reference
@@ -110,7 +111,7 @@ def _group(made: PostureSet, tables: NodeClearances, sweeps: LimbSweeps) -> Grou
 
 
 def _new_tables(made: PostureSet, horizon: int) -> NodeClearances:
-    return new_node_clearances(_CACHED * (horizon + 1), len(made.limits), made.postures.moves.shape[1])
+    return new_node_clearances(_TABLES * (horizon + 1), len(made.limits), made.postures.moves.shape[1])
 
 
 def _new_sweeps(horizon: int, group: DofGroup) -> LimbSweeps:

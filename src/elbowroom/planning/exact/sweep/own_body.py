@@ -34,7 +34,7 @@ Bools = NDArray[np.bool_]
 
 _PHASES = 8  # of the stride
 _SPEED, _SLOW = 1.1, 0.4  # m/s
-_REMEMBERED = 128  # surroundings of a group
+_REMEMBERED = 96  # surroundings of a group, more than a path has key times
 
 
 class Parts(NamedTuple):

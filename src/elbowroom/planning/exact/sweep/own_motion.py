@@ -32,7 +32,7 @@ Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
 Indices = NDArray[np.int64]
 
-_ROOM = 320
+_ROOM = 192  # key intervals that are remembered: most of what is known again was looked at a few plans ago
 _PARTS = plain(6)  # of a key interval, between first looks
 _HALVINGS = plain(7)  # of these
 _LOOKS = 32  # at once
