@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -64,6 +65,16 @@ def after(query: MotionQuery, motion: Motion, keys: int = 1) -> MotionQuery:
         upper=local.configurations[keys],
         velocity=local.velocities[keys],
     )
+
+
+def test_on_uneven_ground_a_plan_looks_no_farther_ahead_than_in_a_hurry(humanoid: Humanoid) -> None:
+    sill: dict[str, Any] = {"type": "box", "center": [0.0, 0.05, 3.0], "size": [2.0, 0.1, 0.3]}
+    uneven = Scene.of("sill", [sill], finish=(0.0, 6.0))
+    for scene, ahead in ((Scene.load("empty"), SETTINGS.look_ahead), (uneven, SETTINGS.hurried_ahead)):
+        planner = ExactPlanner(humanoid, scene)
+        planner.plan_motion(RootPlanner(humanoid, scene), first_query()._replace(horizon=4))
+        assert planner.memory.ongoing is not None
+        assert planner.memory.ongoing.whole.root.path.horizon == round(ahead / T)
 
 
 def test_the_last_plan_is_played_until_it_gets_short_and_only_its_end_is_new(humanoid: Humanoid, posts: Scene) -> None:

@@ -40,6 +40,7 @@ class ExactPlanner:
         self, humanoid: Humanoid, scene: Scene, settings: ExactSettings | None = None, motions: MotionSet = STOCK
     ) -> None:
         self.settings = settings or ExactSettings()
+        self._uneven = not scene.ground.plain
         self._body = UpperBodyPlanner(humanoid, scene, self.settings, motions)
 
     def reset(self) -> None:
@@ -118,7 +119,8 @@ class ExactPlanner:
         return whole
 
     def _horizon(self, query: MotionQuery, *, hurry: bool = False) -> int:
-        ahead = self.settings.hurried_ahead if hurry else self.settings.look_ahead
+        """The key intervals to plan: on uneven ground, where a plan costs most, no more than in a hurry."""
+        ahead = self.settings.hurried_ahead if hurry or self._uneven else self.settings.look_ahead
         return max(query.horizon, round(ahead / query.interval))
 
     def _gone_on(self, left: FullPlan, root_planner: RootPlanner, query: MotionQuery) -> FullPlan | None:

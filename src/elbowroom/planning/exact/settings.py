@@ -12,7 +12,8 @@ class ExactSettings:
     """How far the planner looks, how fast limbs may move, and what it prefers. Metres, radians, seconds."""
 
     look_ahead: float = 2.4  # seconds, whatever the size of the queue
-    hurried_ahead: float = 1.65  # the same where something else is wanted than before: the next plan makes it longer
+    # The same where something else is wanted than before, until the next plan makes it longer; and on uneven ground.
+    hurried_ahead: float = 1.65
     interval: float = 0.15  # seconds between key frames, for which posture sets are made in advance
     samples_share: float = 1.0  # of the postures that the table of groups takes from each clip
     margin: float = 0.008  # clearance of a posture around its key time

@@ -177,7 +177,7 @@ def _posture_clearance(capsules: Floats32, radii: Floats32, near: Nearby) -> Any
     return least
 
 
-@brief_kernel
+@inner_kernel
 def clearance_of_each(capsules: Floats32, radii: Floats32, near: Nearby, out: Floats32) -> None:
     """The clearance of each of `capsules` (6, C) from the nearest of the obstacles, to `out` (C,)."""
     _infinitely_far(out)
