@@ -93,3 +93,18 @@ def test_postures_that_are_added_are_such_as_legs_can_do() -> None:
     assert len(added) > 20
     assert np.max(clear, axis=0).min() > 0.0
     assert planned(body, Effort.REFINED).reached == walk().horizon
+
+
+def test_a_search_that_is_gone_on_with_is_where_it_was_after_others() -> None:
+    body = UpperBodyPlanner(HUMANOID, scene_of(BEAM), ExactSettings(samples_share=0.1))
+    search = planned(body, Effort.JOINT).search
+    before, begins = search.blocked_slice(), search.problem.begins
+    for number in range(8):
+        aside = walk()
+        aside.states[:, 0] += 0.05 * (number + 1)
+        body.plan(aside, begins, effort=Effort.GLANCE)
+    assert not np.array_equal(search.blocked_slice().around.places, before.around.places)
+    body.plan(walk(), begins, effort=Effort.REFINED, after=search)
+    again = search.blocked_slice()
+    np.testing.assert_array_equal(again.around.places, before.around.places)
+    np.testing.assert_array_equal(again.waists, before.waists)

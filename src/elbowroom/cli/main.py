@@ -109,7 +109,16 @@ def run() -> None:
             raise
         typer.echo(f"elbowroom: {error.filename or 'a disk'}: no space is left there", err=True)
         code = WRONG_CALL
+    except MemoryError as error:
+        typer.echo(f"elbowroom: {_too_large(error)}", err=True)
+        code = WRONG_CALL
     sys.exit(code if isinstance(code, int) else 0)
+
+
+def _too_large(error: MemoryError) -> str:
+    """What there was no memory for: a file is too large for this machine, or something else fills it."""
+    what = f" ({error})" if str(error) else ""
+    return f"there is too little memory for this{what}: end other programs, or give a smaller file"
 
 
 def _told_to_end(sig: int, _frame: FrameType | None) -> None:

@@ -92,6 +92,9 @@ class UpperBodyPlanner:
         quick, again = effort in (Effort.GLANCE, Effort.QUICK), effort is not Effort.GLANCE
         rounds, weights = (0, self._quick_weights) if quick else (self.settings.guided_rounds, self._weights)
         search = after or self._search_of(path, begins, previous, near, legs, weights, go_on)
+        if after is not None:
+            ways, stamps = after.caches.roots, after.problem.near.stamps
+            after.go_on_with(root_sweeps(ways, self.model.chain, after.path.states, path.interval, stamps))
         found = None if after is not None else search.motion(rounds, again=again)
         if found is None and effort is Effort.REFINED and not search.spent and self._refine(search):
             before, search = search, self._search_of(path, begins, previous, near, legs, weights, go_on)

@@ -120,6 +120,12 @@ class UpperBodySearch:
         way = self._waist.path
         return way.reached < self.path.horizon and way.rounds < self.weights.rounds
 
+    def go_on_with(self, roots: Longs) -> None:
+        """The root's sweeps are in these cache entries (n,) now: other searches may have taken those they were in."""
+        self.problem = self.problem._replace(roots=roots)
+        if self._waist is not None:
+            self._waist = self._waist._replace(task=self._waist.task._replace(roots=roots, carriers=roots))
+
     def too_deep(self, depth: int, waists: Floats) -> Bools:
         """Which of some waists (N, d) crouch deeper at a key time than the legs can there."""
         return too_deep(self.legs, self.path.states[depth], waists)
