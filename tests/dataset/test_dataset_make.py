@@ -31,6 +31,7 @@ from elbowroom.dataset.hands import HANDS
 from elbowroom.dataset.in_use import in_use
 from elbowroom.dataset.make import make_dataset
 from elbowroom.dataset.manifest import Manifest
+from elbowroom.dataset.report import write_report
 from elbowroom.dataset.spec import STEERING, DatasetSpec
 from elbowroom.dataset.walk import WalkTask
 from elbowroom.errors import InputError
@@ -212,6 +213,16 @@ def test_the_report_counts_every_frame(made: Path, tmp_path: Path) -> None:
     assert text.count('class="scene"') == len(rows)
     assert text.count('class="plot"') == len(Figures().all)
     assert "http" not in text.replace("http://www.w3.org", "")
+
+
+def test_the_report_of_a_set_that_is_being_made_counts_what_was_drawn(made: Path, tmp_path: Path) -> None:
+    for name, data in contents(made).items():
+        (tmp_path / name).write_bytes(data)
+    told = json.loads((tmp_path / "manifest.json").read_text())
+    told["spec"]["walks"] *= 10
+    (tmp_path / "manifest.json").write_text(json.dumps(told))
+    write_report(tmp_path, tmp_path / "walks.html")
+    assert f"of {told['shards'][-1]['end']} drawn" in (tmp_path / "walks.html").read_text()
 
 
 @pytest.mark.long

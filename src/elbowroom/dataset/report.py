@@ -67,8 +67,8 @@ def _page(
     walks, seconds = sum(one.walks for one in shards), sum(one.seconds for one in shards)
     left_out = sum(len(one.rejected) for one in shards)
     lead = (
-        f"{walks} walks, {seconds / 60:.1f} minutes at {spec.fps} frames a second; {left_out} of {spec.walks} drawn "
-        f"were left out. In {figures.clearance.share(0.0, 5.0):.0%} of all frames something is nearer than 5 cm."
+        f"{walks} walks, {seconds / 60:.1f} minutes at {spec.fps} frames a second; {left_out} of {walks + left_out} "
+        f"drawn were left out. In {figures.clearance.share(0.0, 5.0):.0%} of all frames something is nearer than 5 cm."
     )
     style = (files("elbowroom.experiment.report") / "report.css").read_text("utf-8") + _STYLE
     body = (
