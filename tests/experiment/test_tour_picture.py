@@ -13,7 +13,7 @@ from elbowroom.experiment.tour.tour import Milliseconds, TourResult
 from elbowroom.planning.navigation.room_map import Rectangle, RoomMap
 from elbowroom.planning.navigation.surfaces import one_plane
 
-NONE = Milliseconds(0, 0.0, 0.0, 0.0)
+NONE = Milliseconds(0, 0.0, 0.0, 0.0, 0.0)
 DARK = np.array([66, 70, 82])
 
 

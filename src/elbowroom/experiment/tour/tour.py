@@ -30,14 +30,15 @@ class Milliseconds:
     median: float
     p99: float
     worst: float
+    total: float
 
     @classmethod
     def of(cls, values: Floats) -> "Milliseconds":
         """Of costs (n,) in milliseconds."""
         if not len(values):
-            return cls(0, 0.0, 0.0, 0.0)
+            return cls(0, 0.0, 0.0, 0.0, 0.0)
         median, p99, worst = (round(float(np.percentile(values, share)), 3) for share in (50, 99, 100))
-        return cls(len(values), median, p99, worst)
+        return cls(len(values), median, p99, worst, round(float(values.sum()), 3))
 
 
 @dataclass(frozen=True)
