@@ -106,6 +106,8 @@ pictures: $(VENV)/installed $(VENV)/developer
 	else echo "pose-sheet.png stays as it is: name its avatars, make pictures AVATARS='a.vrm b.glb'"; fi
 	@if test -n "$(HOUSE)"; then $(BIN)/elbowroom inspect --quiet --drop 'IfcDoor_*' --plan docs/images/floors.png $(HOUSE); \
 	else echo "floors.png stays as it is: name its house, make pictures HOUSE=AC14-FZK-Haus.glb"; fi
+	@if test -n "$(WALKS)"; then $(BIN)/python tools/make_walks_pictures.py $(WALKS); \
+	else echo "walks.png stays as it is: name a dataset, make pictures WALKS=walks"; fi
 
 strangers: browser-tools $(VENV)/installed
 	@echo "==> Other programs read what we export (some minutes, and 1 GB the first time)"
