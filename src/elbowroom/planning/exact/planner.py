@@ -19,6 +19,7 @@ from elbowroom.planning.exact.plan.full_plan import FullPlan, StandingPlan, firs
 from elbowroom.planning.exact.plan.new_plan import NewPlan
 from elbowroom.planning.exact.plan.ongoing import OngoingPlan
 from elbowroom.planning.exact.plan.plan_memory import PlanMemory
+from elbowroom.planning.exact.plan.task import PlanTask
 from elbowroom.planning.exact.plan.upper_body import UpperBodyPlanner
 from elbowroom.planning.exact.plan.upper_body_search import Effort
 from elbowroom.planning.exact.settings import ExactSettings
@@ -106,7 +107,8 @@ class ExactPlanner:
         hurry = query.hurry or (not is_still(query.root.as_array()[3:6]) and memory.command != query.command)
         memory.command = query.command
         before = root_planner.memory
-        whole = NewPlan(self._body, root_planner, query, self._horizon(query, hurry=hurry), hurry).made(left)
+        task = PlanTask(self._body, root_planner, query, self._horizon(query, hurry=hurry), hurry)
+        whole = NewPlan(task).made(left)
         if left is None and memory.ongoing is not None and not len(root_planner.moving):
             left = memory.ongoing.left_for_another(query)
         if left is not None and not whole.leads_on and self._is_worth_keeping(left, query):

@@ -125,8 +125,7 @@ class RootPaths:
     def stopped(self, asked: Asked) -> RootPlan:
         """To a stand, or out of the way of what comes."""
         began, query = perf_counter_ns(), self._query(asked)
-        before, place = query.checks, (asked.start.x, asked.start.z)
-        answer = Answer(query.stop(), RootPlanKind.STRAIGHT, place, False)
+        before, answer = query.checks, query.stopped()
         return _plan(asked, answer, query.checks - before, began)
 
     def steered(self, asked: Asked, pace: float) -> RootPlan:
@@ -276,7 +275,11 @@ class RootPaths:
 
     def is_free(self, asked: Asked, states: Floats) -> bool:
         """Whether legs and pelvis are free along a path (n+1, 7) from the start, and could stop on the way."""
-        return self._query(asked).is_free(states)
+        return self.kept(asked, states) == len(states) - 1
+
+    def kept(self, asked: Asked, states: Floats) -> int:
+        """The number of leading key intervals of a path (n+1, 7) from the start of which `is_free` holds."""
+        return self._query(asked).kept(states)
 
     def rooms(self, asked: Asked, states: Floats) -> NDArray[np.float32]:
         """The clearance (N,) of legs and pelvis from what stands, in states (N, 7) within reach of the start."""
@@ -297,7 +300,7 @@ class RootPaths:
 
 def _plan(asked: Asked, answer: Answer, checks: int, began: int, lost: float = 0.0) -> RootPlan:
     path = RootPath(asked.start_time, asked.interval, answer.states)
-    return RootPlan(path, answer.kind, answer.goal, checks, perf_counter_ns() - began, lost, answer.beside)
+    return RootPlan(path, answer.kind, answer.goal, checks, perf_counter_ns() - began, lost, answer.beside, answer.free)
 
 
 def _walked(states: Floats) -> float:

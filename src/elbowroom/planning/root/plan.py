@@ -67,6 +67,7 @@ class RootPlan(NamedTuple):
     nanoseconds: int
     lost: float = 0.0  # seconds that it costs against a walk as commanded, evasions and turns included
     beside: bool = False  # whether it leads round a gap that one could go through
+    free: bool = True  # whether nothing that moves comes into it
 
     def along(self, path: RootPath) -> "RootPlan":
         """The same plan on another path."""

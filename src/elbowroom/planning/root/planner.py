@@ -128,12 +128,28 @@ class RootPlanner:
 
         The path as commanded, evasions from it, and slower ones at the shares `paces` of the wanted speed. Evasions
         along the axis of a gap and those that lead far aside are thought of when the others have become dear, as far
-        as so many `grids` suffice. The last one that was given is the one that is being followed; whoever takes an
-        earlier one says so (`follow`).
+        as so many `grids` suffice. Those that something comes into that moves are the last (`RootPlan.free`). The last
+        one that was given is the one that is being followed; whoever takes an earlier one says so (`follow`).
         """
         asked = Asked(start, command, horizon, interval, start_time)
         for offer in self._offers(f"{grids} grids", asked, lambda: self._maker.candidates(asked, paces, grids)):
             yield offer.plan
+
+    def steps_aside(
+        self, start: RootState, command: Command, horizon: int, interval: float, start_time: float = 0.0
+    ) -> Iterator[RootPlan]:
+        """Short steps out of the way of what moves, free ones; arguments and duties as for `candidates`."""
+        asked = Asked(start, command, horizon, interval, start_time)
+        for offer in self._offers("steps aside", asked, lambda: self._maker.steps_aside(asked)):
+            yield offer.plan
+
+    def kept(
+        self, path: RootPath, start: RootState, command: Command, horizon: int, interval: float, start_time: float = 0.0
+    ) -> int:
+        """The leading key intervals of a path from the start in which legs and pelvis are free of all, also of what
+        moves; the other arguments as for `plan`.
+        """
+        return self._paths.kept(Asked(start, command, horizon, interval, start_time), path.states)
 
     def ways_out(
         self, start: RootState, command: Command, horizon: int, interval: float, start_time: float = 0.0
@@ -199,6 +215,16 @@ class _OfferMaker:
 
     def candidates(self, asked: Asked, paces: Sequence[float], most: int) -> Iterator[Offer]:
         """What `RootPlanner.candidates` offers."""
+        touched: list[Offer] = []
+        for offer in self._candidates(asked, paces, most):
+            if offer.plan.free:
+                yield offer
+            else:
+                touched.append(offer)
+        yield from touched
+
+    def _candidates(self, asked: Asked, paces: Sequence[float], most: int) -> Iterator[Offer]:
+        """The same, those that something comes into among the others."""
         before = self.memory.way_out
         commanded = self.commanded(asked, 1.0)
         known, line = self.memory.evading, self.memory.line
@@ -223,7 +249,7 @@ class _OfferMaker:
         kept = self._kept(asked, line, known)
         offers += [] if kept is None else [kept]
         if commanded.kind is RootPlanKind.STOPPED and line is not None and self._paths.is_faced(asked):
-            yield from (step for step in self._steps_aside(asked, direct) if not _leads_back(step.plan, line))
+            yield from (step for step in self.steps_aside(asked, direct) if not _leads_back(step.plan, line))
         while offers or (grids and most > 0 and line is not None):
             offers.sort(key=lambda offer: offer.lost)
             if kept is None and line is not None and most > 0 and grids and _dearer(offers, grids[0][0]):
@@ -242,9 +268,9 @@ class _OfferMaker:
                 line = None
             yield what
         if len(self._paths.moving):
-            yield from self._steps_aside(asked, direct)
+            yield from self.steps_aside(asked, direct)
 
-    def _steps_aside(self, asked: Asked, evading: Evading | None) -> Iterator[Offer]:
+    def steps_aside(self, asked: Asked, evading: Evading | None = None) -> Iterator[Offer]:
         """Short steps out of the way of what moves."""
         for plan in self._paths.steps_aside(asked):
             yield self._offer(plan, evading, None)

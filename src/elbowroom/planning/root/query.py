@@ -27,6 +27,7 @@ Floats = NDArray[np.float64]
 _SLOW = 0.1  # m/s: who walks faster has room for a stride
 _WITH_CORNERS = 3  # points of a route that is not straight, at least
 _CLOSER = 0.35  # of how far ahead one aims on a way, to cut its corners by less
+_ASIDE = 0.45, 0.9  # seconds of a step out of the way of what moves, where one cannot go on so
 _TURN_WORTH = 0.2  # metres that a radian of turning counts for when paths are compared
 
 
@@ -51,6 +52,15 @@ class Answer(NamedTuple):
     brisk: Floats | None = None  # the same were nothing narrow: who is slower there loses nothing
     beside: bool = False  # whether it leads round a gap, as people like to: they lose nothing by that
     likewise: Floats | None = None  # the same were nothing in the way, of who walks along a way
+    free: bool = True  # whether nothing that moves comes into it
+
+
+class _Best(NamedTuple):
+    """What was chosen of some paths."""
+
+    states: Floats  # (n+1, 7)
+    number: int = -1  # which of them it is as a whole; -1: none
+    free: bool = True  # whether nothing that moves comes into it
 
 
 class RootQuery:
@@ -88,27 +98,24 @@ class RootQuery:
         states[0] = self.start
         return states
 
-    def _best(self, candidates: Iterable[Floats]) -> tuple[Floats, int]:
-        """The first candidate that is free, or most of it, or as much of one as leads farthest; else a stop.
-
-        Also its number where it is whole, else -1.
-        """
+    def _best(self, candidates: Iterable[Floats]) -> _Best:
+        """The first candidate that is free, or most of it, or as much of one as leads farthest; else a stop."""
         best, farthest = None, 0.0
         for i, states in enumerate(candidates):
             kept = self._legs.kept(states)
             if kept == self.horizon:
-                return states, i
+                return _Best(states, i)
             if self.around:
                 continue
             brake(states, kept, self.interval, self.bounds)
             if 2 * kept >= self.horizon:
-                return states, -1
+                return _Best(states)
             progress = _length(states) + _TURN_WORTH * abs(float(states[-1, 2] - states[0, 2]))
             if kept > 0 and progress > farthest:
                 best, farthest = states, progress
         if self.around:
-            return self._given_way(), -1
-        return (best, -1) if best is not None else (self.stop(), -1)
+            return self._given_way
+        return _Best(self._stopped() if best is None else best)
 
     def _crept(self, states: Floats, candidate: Callable[[float], Floats]) -> Floats:
         """The path, or where it gets nowhere one of steps so short that they lead out of where a stride has no room.
@@ -123,45 +130,52 @@ class RootQuery:
                 return path
         return states
 
-    def _given_way(self) -> Floats:
+    @cached_property
+    def _given_way(self) -> _Best:
         """Wait, or step out of the way of what comes: the first of these that is free, or the longest free."""
         best, longest = self._stopped(), -1
         for states in (best, *self._steps_aside()):
             kept = self._legs.kept(states)
             if kept == self.horizon:
-                return states
+                return _Best(states)
             if kept > longest:
                 best, longest = states, kept
-        return best
+        return _Best(best, free=False)
 
     def steps_aside(self) -> Iterator[Floats]:
         """Those short steps back, to both sides and on that are free, in the order in which they are liked."""
         return (states for states in self._steps_aside() if self._legs.kept(states) == self.horizon)
 
     def _steps_aside(self) -> Iterator[Floats]:
-        for forward, lateral in self.settings.steps_aside:
-            states, wanted = self._blank(), np.array([forward, lateral, 0.0])
-            steer(states, wanted, self.interval, self.bounds)
-            yield states
+        """Steps that are gone on with, and then those that end."""
+        for seconds in (math.inf, *_ASIDE):
+            for forward, lateral in self.settings.steps_aside:
+                yield self.short_step(np.array([forward, lateral, 0.0]), self._intervals(seconds))
+
+    def _intervals(self, seconds: float) -> int:
+        """The key intervals of so many seconds, all of them at most."""
+        return min(self.horizon, math.ceil(min(seconds / self.interval, self.horizon)))
 
     def short_step(self, wanted: Floats, moving: int) -> Floats:
         """Hold the wanted velocities (3,), as for `steered`, for so many key intervals, and then brake."""
         states = self._blank()
         steer(states[: moving + 1], wanted, self.interval, self.bounds)
-        brake(states, moving, self.interval, self.bounds)
+        if moving < self.horizon:
+            brake(states, moving, self.interval, self.bounds)
         return states
 
-    def is_free(self, states: Floats) -> bool:
-        """Whether a path (n+1, 7) over the whole horizon is free."""
-        return self._legs.kept(states) == self.horizon
+    def kept(self, states: Floats) -> int:
+        """The number of leading key intervals of a path (n+1, 7) that are free, with a free stop from each end."""
+        return self._legs.kept(states)
 
     def rooms(self, states: Floats) -> NDArray[np.float32]:
         """The clearance (N,) of legs and pelvis from what stands, in states (N, 7)."""
         return self._legs.rooms(states)
 
-    def stop(self) -> Floats:
+    def stopped(self) -> Answer:
         """Stand, or step out of the way of what comes."""
-        return self._given_way() if self.around else self._stopped()
+        found = self._given_way if self.around else _Best(self._stopped())
+        return Answer(found.states, RootPlanKind.STRAIGHT, _place(found.states[0]), False, free=found.free)
 
     def _stopped(self) -> Floats:
         """Brake, harder if need be; at last stand still at once."""
@@ -186,10 +200,11 @@ class RootQuery:
             steer(states, wanted * np.array([share, share, share if on_the_spot else 1.0]), self.interval, self.bounds)
             return states
 
-        states, number = self._best(candidate(share) for share in self.settings.slower)
+        states, number, free = self._best(candidate(share) for share in self.settings.slower)
         if not on_the_spot:
             states = self._crept(states, candidate)
-        return Answer(states, self._kind(states, whole=number == 0, detour=False), _place(states[-1]), False)
+        kind = self._kind(states, whole=number == 0, detour=False)
+        return Answer(states, kind, _place(states[-1]), False, free=free)
 
     def travelled(
         self,
@@ -228,12 +243,12 @@ class RootQuery:
             follow(states, corners, travel, self.interval, self.bounds)
             return states
 
-        states, number = self._best(candidate(share) for share in self.settings.slower)
+        states, number, free = self._best(candidate(share) for share in self.settings.slower)
         states = self._crept(states, creeping)
         kind = self._kind(states, whole=number == 0, detour=route.detour)
         brisk = candidate(1.0, NONE_SLOW) if number == 0 and len(slow) else None
         beside = route.beside and number == 0
-        answer = Answer(states, kind, _place(route.corners[-1]), route.ends, brisk=brisk, beside=beside)
+        answer = Answer(states, kind, _place(route.corners[-1]), route.ends, brisk=brisk, beside=beside, free=free)
         return answer._replace(likewise=candidate(1.0)) if corners is not route.corners else answer
 
     def _route_along(self, line: TravelLine, sight: float, way: Floats | None, tight: Floats) -> Route:
@@ -254,11 +269,12 @@ class RootQuery:
             follow_profile(states, profile.rows, profile.first, profile.step, course, self.interval, self.bounds)
             return states
 
-        states, number = self._best(candidate(share) for share in s.shares)
+        states, number, free = self._best(candidate(share) for share in s.shares)
         ahead = profile.first + profile.step * (len(profile.rows) - 1)
         stands = self._kind(states, whole=True, detour=False) is RootPlanKind.STOPPED
         kind = RootPlanKind.STOPPED if stands else RootPlanKind.EVASION
-        return Answer(states, kind, line.point(ahead, float(profile.rows[-1, 0])), not evasion.whole, number >= 0)
+        place, ends = line.point(ahead, float(profile.rows[-1, 0])), not evasion.whole
+        return Answer(states, kind, place, ends, number >= 0, free=free)
 
     def _kind(self, states: Floats, *, whole: bool, detour: bool) -> RootPlanKind:
         if gets_nowhere(states):

@@ -53,9 +53,9 @@ def count_of(near: Nearby) -> int:
     return len(near.rows)
 
 
-def first_spans(spans: Spans, count: int) -> Spans:
-    """The first spans."""
-    return Spans(spans.rows[:count], spans.packed)
+def spans_of(spans: Spans, numbers: Longs) -> Spans:
+    """The spans of these numbers (N,)."""
+    return Spans(spans.rows[numbers], spans.packed)
 
 
 def is_empty(near: Nearby) -> bool:

@@ -1,13 +1,15 @@
 """The last plans: what the next one may keep to, or go on with."""
 
+import math
+
 import numpy as np
 
 from elbowroom.planning.exact.memory.previous_plan import PreviousPlan
 from elbowroom.planning.exact.plan.full_plan import FullPlan, later, previous_of
 from elbowroom.planning.motion import MotionQuery
 from elbowroom.planning.root.path import RootPath
-from elbowroom.planning.root.plan import RootPlanKind
-from elbowroom.planning.stillness import SAME
+from elbowroom.planning.root.plan import RootPlan, RootPlanKind
+from elbowroom.planning.stillness import SAME, UNMOVED
 
 _PAST = 3  # plans before the last one
 _SAME_TIME = 1e-6  # of a key interval
@@ -54,6 +56,21 @@ class RecentPlans:
             return None
         left = later(last, at)
         return left._replace(root=left.root._replace(kind=RootPlanKind.SHORTENED))
+
+    def ahead(self, query: MotionQuery) -> RootPlan | None:
+        """The way that is left of the last plan, if it leads through where this one starts, at a key time or not."""
+        last = self.since(query.time)
+        if last is None:
+            return None
+        path = last.root.path
+        horizon = math.floor((path.times[-1] - query.time) / query.interval + _SAME_TIME)
+        here = path.sample([query.time])[0]
+        if horizon < 1 or np.abs(here - query.root.as_array()).max() > UNMOVED:
+            return None
+        states = path.sample(query.time + query.interval * np.arange(horizon + 1.0))
+        states[0] = query.root.as_array()
+        left = RootPath(query.time, query.interval, states)
+        return last.root.going_on(left)._replace(kind=RootPlanKind.SHORTENED)
 
 
 def after(earlier: FullPlan, whole: FullPlan) -> FullPlan:

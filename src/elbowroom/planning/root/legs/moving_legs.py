@@ -1,5 +1,6 @@
 """Legs and pelvis among what moves: each moment of a path is held against what is swept around it."""
 
+import math
 from functools import cached_property
 
 import numpy as np
@@ -12,11 +13,12 @@ from elbowroom.planning.root.legs.neighbours import Neighbours
 from elbowroom.world.obstacles.clearance import clearance
 from elbowroom.world.obstacles.from_above import ball_radii, gaps_from_above, places_of
 from elbowroom.world.obstacles.layout import Spans
-from elbowroom.world.obstacles.rows import corners_of, first_spans, grown_aside, some_of, span_count, span_of
+from elbowroom.world.obstacles.rows import corners_of, grown_aside, some_of, span_count, span_of, spans_of
 from elbowroom.world.obstacles.tracks.moving import Moving
 
 Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
+Longs = NDArray[np.int64]
 
 _AFTER = 6  # key intervals beyond a path's end in which a stop may last
 _STAYS = 0.25  # metres: what moves less during a plan stands
@@ -25,10 +27,15 @@ _LATE = 1e-6  # of a key interval
 
 
 class MovingAround:
-    """What moves during one plan, in spans of a key interval."""
+    """What moves during one plan, in spans of a key interval.
+
+    They begin at multiples of it whenever a plan begins: so what was free in one plan is free in the next.
+    """
 
     def __init__(self, body: LowerBody, moving: Moving, begin: float, horizon: int, interval: float) -> None:
-        self._body, self._moving, self._begin, self._horizon, self._interval = body, moving, begin, horizon, interval
+        self._body, self._moving, self._horizon, self._interval = body, moving, horizon, interval
+        self._first = math.floor(begin / interval + _LATE)  # the number of the first span
+        self._ahead = begin - self._first * interval  # seconds since that began
 
     def __bool__(self) -> bool:
         return len(self._moving) > 0
@@ -36,7 +43,7 @@ class MovingAround:
     @cached_property
     def _swept(self) -> Spans:
         """What each obstacle sweeps in each span: boxes."""
-        return self._moving.swept(self._begin + self._interval * np.arange(self._horizon + _AFTER + 1.0))
+        return self._moving.swept(self._interval * (self._first + np.arange(self._horizon + _AFTER + 2.0)))
 
     @cached_property
     def _reach(self) -> Floats:
@@ -49,7 +56,7 @@ class MovingAround:
         out = np.full(len(states), np.inf, np.float32)
         if not len(states) or not self:
             return out
-        spans = np.clip((after / self._interval - _LATE).astype(np.int64), 0, span_count(self._swept) - 1)
+        spans = self._spans(after)
         away = np.hypot(*np.moveaxis(places_of(self._swept)[spans] - states[:, None, :2], -1, 0))  # (N, B)
         near = np.flatnonzero((away < self._reach[spans]).any(axis=1))
         if not len(near):
@@ -59,6 +66,11 @@ class MovingAround:
             lanes = spans[near] == span
             out[near[lanes]] = clearance(segments[:, :, lanes], self._body.radii, span_of(self._swept, span))
         return out
+
+    def _spans(self, after: Floats) -> Longs:
+        """The spans (N,) in which times (N,) after the plan's beginning are; the earlier one where two meet."""
+        spans: Longs = np.ceil((self._ahead + after) / self._interval - _LATE).astype(np.int64) - 1
+        return np.clip(spans, 0, span_count(self._swept) - 1)
 
     @cached_property
     def standing(self) -> Neighbours:
@@ -74,5 +86,6 @@ class MovingAround:
 
         It is checked from above; what passes overhead is left out. Infinite where nothing moves.
         """
-        gaps = gaps_from_above(first_spans(self._swept, len(states) - 1), states[1:, :2], height)
+        spans = self._spans(self._interval * np.arange(1.0, len(states)))
+        gaps = gaps_from_above(spans_of(self._swept, spans), states[1:, :2], height)
         return float(gaps.min(initial=np.inf)) - radius
