@@ -30,9 +30,9 @@ PINNED = {
 }
 # The stock avatar: these change with its collision body too.
 PINNED_STOCK = {
-    (1, 0): "e60a515745397b5880962886097d3506a5ab3aa03eae0563b385d05b7481c461",
-    (3, 1): "94880954e59e12a192802d704eb6058eb549f75bf88324183a100f49d7afec26",
-    (5, 2): "99261a76f35042f597e1bab0aee85c72583c32adebe568f0b722573238f9bdb5",
+    (1, 0): "a9c8207154b17da4b531fb5221d2e16cd4a53e62c23a263499f60efdfc478dfc",
+    (3, 1): "dab1f5f8a9eb9ff56c1e91ff750c9c88da49c02a8f0fb23c934ea34ad503271a",
+    (5, 2): "1787e359b51e5d473cdc0296f59c2e6e5d7a46699f97b7531d1a2b3cecdd62ec",
 }
 
 

@@ -24,6 +24,7 @@ Floats = NDArray[np.float64]
 
 MARGIN = 0.01  # metres that the surface may be outside the capsules
 _ARM = ("UpperArm", "Forearm", "Hand")
+_HEAD = "head"
 _SHOULDERS = "shoulders"  # from one shoulder joint to the other, as thick as the upper arms that hang there
 _WHOLE = ("leftUpperArm", "rightUpperArm")  # one capsule each: what is rooted in the trunk is told by its place
 
@@ -46,6 +47,7 @@ class FitSettings:
     margin: float = MARGIN
     arm_margin: float = 0.5 * MARGIN  # the same for arms: nothing passes things as closely, and that is all they keep
     tip_margin: float = 0.5 * MARGIN  # metres that any vertex of the upper body may be outside: that is all it keeps
+    head_margin: float = 0.0  # the same for the head: it ducks under things by no more than it must, and all look at it
 
     @property
     def slack(self) -> float:
@@ -109,7 +111,8 @@ def _tips(skeleton: Skeleton, average: Capsules, surface: Surface, settings: Fit
     found = {}
     for part in np.unique(parts[parts >= 0]).tolist():
         name = average.names[part]
-        margin = settings.margin if average.groups[part] is DofGroup.ROOT else settings.tip_margin
+        margin = settings.head_margin if name == _HEAD else settings.tip_margin
+        margin = settings.margin if average.groups[part] is DofGroup.ROOT else margin
         thinnest = 0.5 * settings.thinnest * float(average.radii[part])
         points, samples = surface.vertices.positions[parts == part], surface.samples.positions[sampled == part]
         found[name] = Tips(points, samples, margin, thinnest)
