@@ -41,7 +41,6 @@ class ExactPlanner:
         self, humanoid: Humanoid, scene: Scene, settings: ExactSettings | None = None, motions: MotionSet = STOCK
     ) -> None:
         self.settings = settings or ExactSettings()
-        self._uneven = not scene.ground.plain
         self._body = UpperBodyPlanner(humanoid, scene, self.settings, motions)
 
     def reset(self) -> None:
@@ -107,7 +106,7 @@ class ExactPlanner:
         hurry = query.hurry or (not is_still(query.root.as_array()[3:6]) and memory.command != query.command)
         memory.command = query.command
         before = root_planner.memory
-        task = PlanTask(self._body, root_planner, query, self._horizon(query, hurry=hurry), hurry)
+        task = PlanTask(self._body, root_planner, query, self._horizon(root_planner, query, hurry=hurry), hurry)
         whole = NewPlan(task).made(left)
         if left is None and memory.ongoing is not None and not len(root_planner.moving):
             left = memory.ongoing.left_for_another(query)
@@ -120,9 +119,10 @@ class ExactPlanner:
         memory.ongoing = OngoingPlan(query, whole) if alone and lasts else None
         return whole
 
-    def _horizon(self, query: MotionQuery, *, hurry: bool = False) -> int:
+    def _horizon(self, root_planner: RootPlanner, query: MotionQuery, *, hurry: bool = False) -> int:
         """The key intervals to plan: on uneven ground, where a plan costs most, no more than in a hurry."""
-        ahead = self.settings.hurried_ahead if hurry or self._uneven else self.settings.look_ahead
+        near = hurry or root_planner.uneven
+        ahead = self.settings.hurried_ahead if near else self.settings.look_ahead
         return max(query.horizon, round(ahead / query.interval))
 
     def _gone_on(self, left: FullPlan, root_planner: RootPlanner, query: MotionQuery) -> FullPlan | None:
@@ -132,7 +132,7 @@ class ExactPlanner:
         body's sake, along a way; where a hand steers, and where the legs alone make it slower, it is planned anew at
         once.
         """
-        horizon, known = self._horizon(query), left.root.path.horizon
+        horizon, known = self._horizon(root_planner, query), left.root.path.horizon
         if not _is_commanded(left, root_planner):
             slower = bool(query.command.way) and left.root.kind is not RootPlanKind.SHORTENED
             kept = (slower or left.root.kind is RootPlanKind.EVASION) and known >= horizon - self._spare(query)
@@ -149,7 +149,7 @@ class ExactPlanner:
 
     def _with_new_end(self, left: FullPlan, root_planner: RootPlanner, query: MotionQuery) -> FullPlan | None:
         """What is left of a walk that has become too short, and beyond that a new end; None if there is none."""
-        near = self._horizon(query)
+        near = self._horizon(root_planner, query)
         far = near + self._spare(query)
         root = root_planner.plan(query.root, query.command, far, query.interval, query.time)
         if root.lost >= root_planner.settings.untroubled:

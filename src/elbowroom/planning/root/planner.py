@@ -86,6 +86,11 @@ class RootPlanner:
         return self._paths.bounds
 
     @property
+    def uneven(self) -> bool:
+        """Whether the ground is no plane."""
+        return not self.bounds.ground.plain
+
+    @property
     def moving(self) -> Moving:
         """All that moves."""
         return self._paths.moving

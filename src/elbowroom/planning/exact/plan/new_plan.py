@@ -31,8 +31,8 @@ class NewPlan:
         `left` is what is left of a walk that has no new end.
         """
         task, tried = self.task, list[Tried]()
-        uneven = not task.root_planner.bounds.ground.plain
-        task.attempts.begin(task.query, hurry=task.hurry, stands=task.stands, uneven=uneven, moving=task.among_moving)
+        uneven, moving = task.root_planner.uneven, task.among_moving
+        task.attempts.begin(task.query, hurry=task.hurry, stands=task.stands, uneven=uneven, moving=moving)
         found = self._group_by_group(left, tried)
         if found is None and not task.hurry:
             found = self._all_together(tried)
