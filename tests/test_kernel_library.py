@@ -1,11 +1,13 @@
 """What a kernel calls is its own, and is taken in as it is on disk."""
 
+import os
 from typing import Any
 
 import numba
 import numpy as np
 import pytest
 from llvmlite.binding import Linkage, parse_bitcode
+from numba.core.compiler import CompilerBase
 
 import elbowroom.planning.exact.planner  # noqa: F401  # it makes them
 from elbowroom.jit import kernels_made
@@ -53,6 +55,20 @@ def test_who_takes_a_kernel_in_may_take_in_what_it_calls_from_others_too(library
 def test_all_kernels_are_compiled_so() -> None:
     assert len(kernels_made()) > 100
     assert {one._compiler.pipeline_class for one in kernels_made()} == {KernelCompiler}
+
+
+@pytest.mark.skipif("NUMBA_OPT" in os.environ, reason="NUMBA_OPT is set, and counts")
+def test_kernels_are_optimised_at_their_own_level_and_code_of_others_is_not(monkeypatch: pytest.MonkeyPatch) -> None:
+    levels, compiled, config = list[int](), CompilerBase.compile_extra, numba.config
+
+    def seen(compiler: CompilerBase, function: Any) -> Any:
+        levels.append(int(config.OPT))  # type: ignore[attr-defined]
+        return compiled(compiler, function)  # type: ignore[no-untyped-call]
+
+    monkeypatch.setattr(CompilerBase, "compile_extra", seen)
+    for options in (FAST, {}, FAST):
+        assert numba.njit(lambda number: 2 * number, **options)(3) == 6
+    assert levels == [1, 3, 1]
 
 
 @numba.njit(**FAST)  # type: ignore[untyped-decorator]
