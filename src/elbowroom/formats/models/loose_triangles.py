@@ -14,6 +14,7 @@ from elbowroom.errors import InputError
 from elbowroom.formats.gltf import Gltf, parse_gltf
 from elbowroom.formats.models.kinds import ModelKind
 from elbowroom.formats.models.obj_text import plain_obj
+from elbowroom.formats.models.ply.polygons import in_triangles
 
 _MOST_BESIDE = 64 * 2**20  # bytes of materials and pictures beside a model, in all
 
@@ -26,6 +27,8 @@ def parse_loose_triangles(data: bytes, kind: ModelKind, name: str, folder: Path 
     options: dict[str, Any] = {}
     if kind is ModelKind.OBJ:
         data, options = plain_obj(data), {"split_objects": True, "split_groups": True}
+    if kind is ModelKind.PLY:
+        data = in_triangles(data)
     load: Any = trimesh.load_scene  # which takes whatever can be asked for files as `beside` can
     try:
         with _silent():
