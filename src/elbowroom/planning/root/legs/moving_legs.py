@@ -7,13 +7,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.pose.kinematics import leg_capsules
+from elbowroom.jit import kernel
 from elbowroom.planning.root.legs.hull import ground_below
 from elbowroom.planning.root.legs.lower_body import LowerBody
 from elbowroom.planning.root.legs.neighbours import Neighbours
-from elbowroom.world.obstacles.clearance import clearance
+from elbowroom.world.obstacles.clearance import clearance_into
 from elbowroom.world.obstacles.from_above import ball_radii, gaps_from_above, places_of
 from elbowroom.world.obstacles.layout import Spans
-from elbowroom.world.obstacles.rows import corners_of, grown_aside, some_of, span_count, span_of, spans_of
+from elbowroom.world.obstacles.rows import at_span, corners_of, grown_aside, some_of, span_count, span_of, spans_of
 from elbowroom.world.obstacles.tracks.moving import Moving
 
 Floats = NDArray[np.float64]
@@ -24,6 +25,21 @@ _AFTER = 6  # key intervals beyond a path's end in which a stop may last
 _STAYS = 0.25  # metres: what moves less during a plan stands
 _POLITE = 0.08  # metres that are kept from what may move
 _LATE = 1e-6  # of a key interval
+
+
+@kernel
+def _clearances(segments: Floats32, radii: Floats32, swept: Spans, spans: Longs) -> Floats32:
+    """The clearance (N,) of capsules (C, 6, N), each posture from what is there in its span (N,); spans ascend."""
+    count, first = spans.shape[0], 0
+    out = np.empty(count, np.float32)
+    while first < count:
+        last = first + 1
+        while last < count and spans[last] == spans[first]:
+            last += 1
+        own = segments[:, :, first:last].copy()
+        clearance_into(own, radii, at_span(swept, spans[first]), out[first:last])
+        first = last
+    return out
 
 
 class MovingAround:
@@ -62,9 +78,7 @@ class MovingAround:
         if not len(near):
             return out
         segments = leg_capsules(self._body.model, states[near])
-        for span in np.unique(spans[near]):
-            lanes = spans[near] == span
-            out[near[lanes]] = clearance(segments[:, :, lanes], self._body.radii, span_of(self._swept, span))
+        out[near] = _clearances(segments, self._body.radii, self._swept, spans[near])
         return out
 
     def _spans(self, after: Floats) -> Longs:
