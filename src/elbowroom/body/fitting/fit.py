@@ -111,8 +111,8 @@ def _tips(skeleton: Skeleton, average: Capsules, surface: Surface, settings: Fit
     found = {}
     for part in np.unique(parts[parts >= 0]).tolist():
         name = average.names[part]
-        margin = settings.head_margin if name == _HEAD else settings.tip_margin
-        margin = settings.margin if average.groups[part] is DofGroup.ROOT else margin
+        upper = settings.head_margin if name == _HEAD else settings.tip_margin
+        margin = settings.margin if average.groups[part] is DofGroup.ROOT else upper
         thinnest = 0.5 * settings.thinnest * float(average.radii[part])
         points, samples = surface.vertices.positions[parts == part], surface.samples.positions[sampled == part]
         found[name] = Tips(points, samples, margin, thinnest)

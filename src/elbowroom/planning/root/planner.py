@@ -133,8 +133,8 @@ class RootPlanner:
 
         The path as commanded, evasions from it, and slower ones at the shares `paces` of the wanted speed. Evasions
         along the axis of a gap and those that lead far aside are thought of when the others have become dear, as far
-        as so many `grids` suffice. Those that something comes into that moves are the last (`RootPlan.free`). The last
-        one that was given is the one that is being followed; whoever takes an earlier one says so (`follow`).
+        as so many `grids` suffice. Those that are not free of what moves come last (`RootPlan.free`). The last one that
+        was given is the one that is being followed; whoever takes an earlier one says so (`follow`).
         """
         asked = Asked(start, command, horizon, interval, start_time)
         for offer in self._offers(f"{grids} grids", asked, lambda: self._maker.candidates(asked, paces, grids)):

@@ -150,11 +150,8 @@ class RootQuery:
         """Steps that are gone on with, and then those that end."""
         for seconds in (math.inf, *_ASIDE):
             for forward, lateral in self.settings.steps_aside:
-                yield self.short_step(np.array([forward, lateral, 0.0]), self._intervals(seconds))
-
-    def _intervals(self, seconds: float) -> int:
-        """The key intervals of so many seconds, all of them at most."""
-        return min(self.horizon, math.ceil(min(seconds / self.interval, self.horizon)))
+                moving = math.ceil(min(seconds / self.interval, self.horizon))
+                yield self.short_step(np.array([forward, lateral, 0.0]), moving)
 
     def short_step(self, wanted: Floats, moving: int) -> Floats:
         """Hold the wanted velocities (3,), as for `steered`, for so many key intervals, and then brake."""
