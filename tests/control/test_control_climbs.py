@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from elbowroom.body.humanoid import Humanoid
-from elbowroom.body.root import HEIGHT
+from elbowroom.body.root import HEIGHT, RISES, ROOT_STATE
 from elbowroom.control.controller import Controller
 from elbowroom.control.frame import Frame
 from elbowroom.control.journey import JourneyState
@@ -62,6 +62,7 @@ def heights(frames: list[Frame]) -> "np.ndarray[tuple[int], np.dtype[np.float64]
     return np.array([frame.root[HEIGHT] for frame in frames])
 
 
+QUICKEST = 6.0  # m/s, up or down: 10 cm in a frame
 PLACES = [(0.4, 0.1), (0.3, 0.1), (0.4, 0.5), (0.3, 2.0), (0.4, 2.0)]  # heights and lengths, metres
 
 
@@ -73,6 +74,17 @@ def test_what_lies_across_a_corridor_is_climbed(top: float, length: float) -> No
     assert heights(frames).max() > 0.2 * top
     assert abs(heights(frames)[-1]) < 1e-6
     assert frames[-1].root[3] > 0.8, "behind it one walks on as fast as before"
+
+
+@pytest.mark.parametrize(("top", "length"), [(0.3, 0.1), (0.4, 0.1)])
+@pytest.mark.parametrize("aside", [0.0, 0.13])
+def test_a_foot_that_is_close_before_an_edge_goes_up_and_is_nowhere_at_once(
+    top: float, length: float, aside: float
+) -> None:
+    frames = walked(across(top, length), aside=aside) if aside > 0.0 else over(top, length)
+    roots = np.stack([frame.root for frame in frames])
+    heights_of_feet = roots[:, RISES:ROOT_STATE:2] + roots[:, [HEIGHT]]
+    assert np.abs(np.diff(heights_of_feet, axis=0)).max() < QUICKEST * FRAME
 
 
 @pytest.mark.parametrize(("top", "length"), sampled(PLACES))

@@ -4,17 +4,17 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from elbowroom.body.dof import DOF, LOCAL, LOCAL_GROUPS, LOWERING, DofGroup, columns_of, limits
+from elbowroom.body.dof import LOCAL, LOCAL_GROUPS, LOWERING, DofGroup, columns_of, limits
 from elbowroom.body.gait.footholds import beside
 from elbowroom.body.humanoid import Humanoid
-from elbowroom.body.pose.kinematics import body_model, posture_capsules
+from elbowroom.body.pose.kinematics import body_model
 from elbowroom.body.root import CARRIAGE, FOOT, ROOT_STATE
 from elbowroom.clips.motion_set import STOCK
 from elbowroom.control.feet.arms_beside_legs import ArmsBesideLegs
 from elbowroom.control.key_frame_queue import Playback
 from elbowroom.control.plans.planning_scene import PlanningScene
 from elbowroom.control.settings import ControlSettings
-from elbowroom.control.shown.body_check import Frames
+from elbowroom.control.shown.body_check import BodyCheck, Frames
 from elbowroom.control.shown.own_body_check import own_body_check
 from elbowroom.control.shown.showing import Showing
 from elbowroom.dataset.draw import Draw
@@ -33,6 +33,7 @@ Pose = tuple[Floats, Floats]
 BODY = Humanoid.default()
 MODEL = body_model(BODY)
 CHECK, PAIRS = own_body_check(BODY, STOCK), self_pairs(MODEL)
+ALONE = BodyCheck(BODY, Scene.load("empty"))
 FRAME = 1 / 60  # seconds
 BEND, LOWERED = columns_of(DofGroup.WAIST).start, LOWERING - DofGroup.ROOT.size
 # Walks of a dataset in which parts of the body were deeper in each other than they may: a hand in a thigh that comes
@@ -50,8 +51,7 @@ def gap(pose: Pose) -> float:
 
 
 def free_between(one: Pose, other: Pose) -> bool:
-    axes = [posture_capsules(MODEL, np.append(np.zeros(DOF - LOCAL), upper), root) for root, upper in (one, other)]
-    return CHECK.free_between(Frames((one[0], other[0]), (one[1], other[1]), (0.0, 1.0)), (axes[0], axes[1]))
+    return CHECK.free_between(ALONE.between(Frames((one[0], other[0]), (one[1], other[1]), (0.0, 1.0))))
 
 
 def standing_alone() -> Showing:

@@ -36,7 +36,7 @@ def showing(shown: Playback, *, plain: bool = True, straight: bool = True) -> Sh
         shown_clearance=lambda *_: 1.0,
         leaves_room=lambda _: True,
         free_between=lambda _: straight,
-        shown_axes=lambda *_: None,
+        between=lambda _: None,
     )
     own_body = SimpleNamespace(free_between=lambda *_: True)
     around: Any = SimpleNamespace(

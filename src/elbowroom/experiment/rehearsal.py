@@ -19,7 +19,6 @@ from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.pose.kinematics import body_model, leg_capsules, lower_body
 from elbowroom.body.root import CARRIAGE, ROOT_STATE, RootState
 from elbowroom.control.feet.feet_ahead import glides_ahead, steps_ahead
-from elbowroom.control.feet.turned_legs import turned_legs
 from elbowroom.control.shown.body_check import BodyCheck, Frames
 from elbowroom.planning.command import Command
 from elbowroom.planning.exact.group.own_contacts import rule_out_near
@@ -142,14 +141,13 @@ def rehearse_narrow(humanoid: Humanoid) -> None:
 
 
 def rehearse_feet(humanoid: Humanoid) -> None:
-    """Stand, glide, step and live, and look how feet will step and glide, and how legs turn from frame to frame."""
+    """Stand, glide, step and live, and look how feet will step and glide."""
     model, root = body_model(humanoid), np.zeros(ROOT_STATE)
-    gait, upper = model.gait, np.zeros(LOCAL)
+    gait = model.gait
     row = gliding(gait, beside(gait, root), root, 0.01)
     settled(gait, onward(gait, row, root, 0.01))
     for ahead in (steps_ahead, glides_ahead):
         ahead(gait, row, np.concatenate([[0.1], root])[None], 0.1)
-    turned_legs(model, (row, row), (upper, upper), np.array([0.5]))
     feet_standing(1.0, root[None])
     stride_length(_SPEED)
     living(body_of(gait), np.concatenate([row, np.zeros(CARRIAGE)]), row, 0.01, 1.0, UNKNOWN)

@@ -13,7 +13,7 @@ from elbowroom.body.gait.carriage import about_left, carried_turns, hips_turn, l
 from elbowroom.body.gait.lowered_hips import hips_sink
 from elbowroom.body.root import HEIGHT, WITH_FEET
 from elbowroom.by_reference import by_reference
-from elbowroom.jit import brief_kernel, helper, inner_kernel, kernel, plain
+from elbowroom.jit import helper, inner_kernel, kernel, plain
 
 Floats = NDArray[np.float64]
 Indices = NDArray[np.int64]
@@ -325,7 +325,26 @@ def pose_body(
     return out, chest_places, chest_rotations
 
 
-@brief_kernel
+@inner_kernel
+def pose_joints(figure: Figure, capsules: CapsuleChain, roots: Floats, local: Floats, hips: Floats) -> Segments:
+    """Capsules (C, 6, N) in the world for rotations (N, J, 4) of all joints and places (N, 3) of the hips' joint.
+
+    As `pose_local` gives them: in the axes of roots (N, 7 or more).
+    """
+    out = np.empty((len(capsules.joints), 6, len(roots)), np.float32)
+    row, scratch, here = np.empty((1, 6)), np.empty((2, 4)), np.zeros(2)
+    rotations, places = np.empty(figure.base.shape), np.empty(figure.offsets.shape)
+    for n in range(len(roots)):
+        _place_hips(roots[n], hips[n], here, rotations, places, _FIRST)
+        for i in range(4):
+            scratch[0, i] = rotations[0, i]
+        _product(scratch, _FIRST, local[n], _FIRST, rotations, _FIRST)
+        _chain(capsules.order, figure.parents, figure.offsets, local[n], rotations, places)
+        _segments(capsules.joints, capsules.ends, rotations, places, row, n, out)
+    return out
+
+
+@inner_kernel
 def pose_legs(figure: Figure, capsules: CapsuleChain, roots: Floats, leg_rotations: Floats, sinks: Floats) -> Segments:
     """Capsules (C, 6, N) of pelvis and legs in the world."""
     out = np.empty((len(capsules.joints), 6, len(roots)), np.float32)

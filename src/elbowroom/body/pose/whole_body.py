@@ -48,7 +48,7 @@ class WholeBody(NamedTuple):
 
 
 def whole_body(by: PosedBy) -> WholeBody:
-    """The same for kernels, in the order in which `_taken_apart` takes it."""
+    """The same for kernels, in the order in which `taken_apart` takes it."""
     figure, capsules, columns, arms = by.figure, by.capsules, by.figure.columns, by.figure.arms
     numbers = [
         figure.base, figure.offsets, columns.shares, arms.mirrors, capsules.ends, by.leg_rest, np.array([by.half_leg]),
@@ -78,7 +78,8 @@ def _places(body: WholeBody, part: int) -> Indices:
 
 
 @helper
-def _taken_apart(body: WholeBody) -> PosedBy:
+def taken_apart(body: WholeBody) -> PosedBy:
+    """The parts that were put together by `whole_body`."""
     base, offsets, ends, rest = _numbers(body, 0), _numbers(body, 1), _numbers(body, 4), _numbers(body, 5)
     arms, legs = _places(body, 4), _places(body, 6)
     figure = posing.Figure(
@@ -114,7 +115,7 @@ def posed_joints(body: WholeBody, q: Floats, root: Floats) -> tuple[Floats, Floa
 
     For a posture (DOF,) and a root state (7 or more,).
     """
-    by, rows = _taken_apart(body), root.reshape((1, len(root)))
+    by, rows = taken_apart(body), root.reshape((1, len(root)))
     legs, sinks = _lower_body(by, rows, q[LOWERING : LOWERING + 1].copy())
     x, y, z = posing.hips_shift(by.figure, root, sinks[0, 2])
     rest = by.figure.offsets[0]
@@ -128,7 +129,7 @@ def posed_body(body: WholeBody, q: Floats, roots: Floats) -> tuple[Segments, Flo
 
     And the chest frames: places (N, 3) and rotations (N, 4) of the last spine joint.
     """
-    by = _taken_apart(body)
+    by = taken_apart(body)
     legs, sinks = _lower_body(by, roots, q[:, LOWERING].copy())
     return posing.pose_body(by.figure, by.capsules, q, roots, legs, sinks)
 
@@ -145,6 +146,6 @@ def posed_legs(body: WholeBody, roots: Floats, lowerings: Floats) -> Segments:
 
     For root states (N, 7 or more) and lowerings (N,).
     """
-    by = _taken_apart(body)
+    by = taken_apart(body)
     legs, sinks = _lower_body(by, roots, lowerings)
     return posing.pose_legs(by.figure, by.capsules, roots, legs, sinks)

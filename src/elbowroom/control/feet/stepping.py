@@ -148,12 +148,23 @@ class Stepping:
                     yield way, stance, self._arms.are_clear(way.root, way.upper)
         still = moment._replace(room=NOT_AT_ALL)
         for posed, stance in played:
-            waits = self._made(still._replace(dt=0.0), posed, STEPS).root
-            if not self._is_strained(waits, posed.upper):
+            for waits in self._waiting(still, posed):
                 waiting = posed._replace(root=waits)
                 apart = waiting._replace(upper=self._arms.apart(waits, posed.upper))
                 for way in (apart, *self._less_apart(waiting)):
                     yield way, stance, self._arms.are_clear(way.root, way.upper)
+
+    def _waiting(self, still: Moment, posed: Playback) -> Iterator[Floats]:
+        """Root states (SHOWN,) of a pose on feet that wait; first, where one has to go up, on such as do only that."""
+        waits = self._made(still._replace(dt=0.0), posed, STEPS).root
+        if self._is_strained(waits, posed.upper):
+            return
+        if not self._footing.plain:
+            steps, rises = self._made(still, posed, STEPS).root, waits.copy()
+            rises[RISES:ROOT_STATE:2] = np.maximum(steps, waits)[RISES:ROOT_STATE:2]
+            if np.abs(rises - waits).max() > _SAME:
+                yield rises
+        yield waits
 
     def _made_way(self, alive: Posing) -> Iterator[Playback]:
         """How a pose is shown where arms make way for legs, on hips that live and then on those planned: best first."""

@@ -9,23 +9,23 @@ from numpy.typing import NDArray
 
 from elbowroom.body.dof import DOF, LOCAL, LOWERING, DofGroup
 from elbowroom.body.humanoid import Humanoid
+from elbowroom.body.pose.between_frames import ShownFrames, shown_frames
 from elbowroom.body.pose.kinematics import body_model
+from elbowroom.body.pose.whole_body import posed_joints
 from elbowroom.control.feet.above_soles import AboveSoles
-from elbowroom.control.feet.turned_legs import turned_at, turned_legs
 from elbowroom.control.others.neighbour import Neighbour
 from elbowroom.control.others.room_left import in_world, leaves_room
 from elbowroom.control.shown.standing_about import (
     HALVINGS,
-    are_free,
-    capsules_of,
     gaps_about,
-    lifted_capsules,
+    held_between,
+    held_capsules,
     proven_between,
     room_along,
+    ways_between,
 )
 from elbowroom.planning.halving import begun, due, settle
 from elbowroom.planning.model.footing import Footing
-from elbowroom.planning.model.levers import body_levers, travel
 from elbowroom.planning.stillness import STILL
 from elbowroom.world.obstacles.obstacles import Obstacles
 from elbowroom.world.obstacles.tracks.moving import Moving
@@ -59,6 +59,7 @@ class _Pose(NamedTuple):
 
     root: Floats  # (ROOT_STATE,), (WITH_FEET,) or (SHOWN,)
     upper: Floats  # (LOCAL,)
+    joints: tuple[Floats, Floats]  # rotations (J, 4) and place of the hips (3,), see `posed_joints`
     axes: Floats32  # (C, 6, 1) the capsules' axes as seen from the root's place
     floors: Floats  # (2,) heights that the soles keep above, see `AboveSoles.floors`
     gaps: Floats32  # (C,) how far each capsule is from what stands; of the nearest that, of others at least so much
@@ -76,7 +77,6 @@ class BodyCheck:
         self.model = body_model(humanoid)  # its joints and capsules, as kernels take them
         self._radii = humanoid.capsules.radii.astype(np.float32)
         self.soles = AboveSoles(self.model, scene.ground)  # how it stands on the ground here
-        self._levers = body_levers(humanoid).own
         moving = scene.obstacles.moving
         self._standing = replace(scene.obstacles, moving=Moving()) if len(moving) else scene.obstacles
         self._moving, self._loose = Obstacles(moving=moving), Obstacles()
@@ -87,6 +87,7 @@ class BodyCheck:
         self._above = [number for number in range(len(self._radii)) if number not in self._legs]
         self._knees: list[int] = np.flatnonzero(np.isin(self.model.body.joints, self.model.figure.legs[:, :2])).tolist()
         self._poses: tuple[_Pose, ...] = ()  # latest first
+        self._between: tuple[Frames, ShownFrames] | None = None  # the frames that were asked about last
         self.others: Sequence[Neighbour] = ()  # other avatars, as they say that they will move
         self.told: Neighbour | None = None  # what they know of this one
 
@@ -132,15 +133,6 @@ class BodyCheck:
     def axes(self, root: Floats, upper: Floats) -> Floats32:
         """The capsules' axes (C, 6, 1) as seen from the root's place."""
         return self._pose(root, upper).axes
-
-    def shown_axes(self, root: Floats, upper: Floats) -> Floats32:
-        """The same with feet where they are shown, and not as high as they are held against obstacles."""
-        if self.footing.plain:
-            return self.axes(root, upper)
-        return self._capsules(root, upper, held=False)
-
-    def _capsules(self, root: Floats, upper: Floats, *, held: bool) -> Floats32:
-        return capsules_of(self.soles.body, np.ascontiguousarray(root), np.ascontiguousarray(upper), held)
 
     def room_of_legs(self, root: Floats, upper: Floats, time: float, axes: Floats32 | None = None) -> float:
         """Metres from the legs to the nearest obstacle, as `shown_clearance` of the whole body.
@@ -189,10 +181,10 @@ class BodyCheck:
         return after >= min(before, THING_MARGIN) and before + after > way
 
     def free_between(self, frames: Frames) -> bool:
-        """Whether all that a screen shows between two frames is proven free, by `halving`: straight interpolants.
+        """Whether all that a screen shows between two frames is proven free, by `halving`.
 
         Each capsule by itself of what stands, the whole body of what moves. Where others move as they mean to, until
-        the second frame. Where feet go far, as on treads, `turned_legs.py` has more moments.
+        the second frame.
         """
         if self.alone:
             return True
@@ -200,12 +192,18 @@ class BodyCheck:
         floors, gaps = np.minimum(before.floors, after.floors), (before.gaps, after.gaps)
         if self.soles.change(before.floors, after.floors):
             gaps = self._gaps(before.axes, before.root, floors), self._gaps(after.axes, after.root, floors)
-        if not self.footing.plain and not self._turns_free(frames, floors):
-            return False
-        body, standing = self.soles.body, self._standing.about_bodies
-        if not proven_between(body, standing, self._levers, frames.roots, frames.uppers, gaps, floors):
+        axes, standing, shown = (before.axes, after.axes), self._standing.about_bodies, self.between(frames)
+        if not proven_between(self.soles.body, standing, shown, frames.uppers, axes, gaps, floors):
             return False
         return not self.accompanied or self._free_of_movers(frames, (before, after))
+
+    def between(self, frames: Frames) -> ShownFrames:
+        """What a screen shows between two frames, for kernels; remembered of those that were asked about last."""
+        known = self._between
+        if known is None or known[0] is not frames:
+            first, second = self._ends(frames)
+            self._between = known = frames, shown_frames(frames.roots, first.joints, second.joints)
+        return known[1]
 
     def _ends(self, frames: Frames) -> tuple[_Pose, _Pose]:
         (first, last), (begin, end), _ = frames
@@ -223,23 +221,15 @@ class BodyCheck:
         first, last = frames.times
         moved = [around.moving.fastest * (last - first) for around in self._around]
         moved += [other.travel(first, last) for other in self.others]
-        ways = float(travel(self._levers, frames.roots, frames.uppers).max()) + np.array([moved])
+        before, after = ends
+        own = ways_between(self.soles.body, self.between(frames), (before.axes, after.axes))
+        ways = float(own.max()) + np.array([moved])
         gaps = [self._from_movers(end.axes, end.root, time) for end, time in zip(ends, frames.times, strict=True)]
         proof = begun(np.array(gaps, np.float32), ways, 1, 0.0, HALVINGS)
         parts, shares = np.empty(_LOOKS, np.int64), np.empty(_LOOKS)
         while (count := due(proof, parts, shares)) > 0:
             settle(proof, self._from_movers_at(frames, shares[:count]), count)
         return bool(proof.least.min() >= 0.0)
-
-    def _turns_free(self, frames: Frames, floors: Floats) -> bool:
-        """Whether legs that turn by the shortest arcs are free of what stands, at some moments between two frames."""
-        shares = turned_at(*frames.roots)
-        if not len(shares):
-            return True
-        legs = turned_legs(self.model, frames.roots, frames.uppers, shares)
-        lifted = self.soles.footing.lifted(legs.axes, self.model.roots, legs.states, legs.lowerings)
-        x, z = frames.roots[0][:2].tolist()
-        return are_free(self.soles.legs, self._standing.about_bodies, lifted, x, z, floors)
 
     @property
     def accompanied(self) -> bool:
@@ -252,13 +242,10 @@ class BodyCheck:
 
     def _from_movers_at(self, frames: Frames, shares: Floats) -> Floats32:
         """The clearances (k, M) from all that can move at shares (k,) of the time between two frames."""
-        (first, last), (begin, end), (before, after) = frames
-        part = shares[:, None]
-        roots, uppers = first + part * (last - first), begin + part * (end - begin)
-        roots[:, :2] -= first[:2]
-        axes = lifted_capsules(self.soles.body, np.concatenate([roots[:, :3], uppers], axis=1), roots)
+        before, after = frames.times
+        axes, root = held_between(self.soles.body, self.between(frames), frames.uppers, shares), frames.roots[0]
         times = before + shares * (after - before)
-        found = [self._from_movers(axes[:, :, [n]], first, time) for n, time in enumerate(times.tolist())]
+        found = [self._from_movers(axes[:, :, [n]], root, time) for n, time in enumerate(times.tolist())]
         return np.array(found, np.float32)
 
     def _from_movers(self, axes: Floats32, root: Floats, time: float) -> list[float]:
@@ -278,11 +265,13 @@ class BodyCheck:
         for pose in self._poses:
             if pose.root is root and pose.upper is upper:
                 return pose
+        own, here, above = self.soles.body, np.ascontiguousarray(root), np.ascontiguousarray(upper)
+        joints = posed_joints(own.whole, configuration(here, above), here)
         if axes is None:
-            axes = self._capsules(root, upper, held=True)
+            axes = held_capsules(own, here, above, joints)
         floors = self.soles.floors(root)
         gaps = self._gaps(axes, root, floors)
-        pose = _Pose(root, upper, axes, floors, gaps, gaps.tolist())
+        pose = _Pose(root, upper, joints, axes, floors, gaps, gaps.tolist())
         self._poses = (pose, *self._poses[: _REMEMBERED - 1])
         return pose
 

@@ -2,8 +2,7 @@
 
 Planners prove a motion on the legs of the walking cycle. What is shown stands and steps on feet of its own, carries
 hips and chest otherwise, and its arms make way for its legs: so it is proven once more, all pairs of parts, by
-`halving`. How far parts move from one frame to the next is measured: what the ends of their axes move as seen from the
-root's place, a quarter more, and a little for what goes to and fro.
+`halving`, as screens have it between two frames (`body/pose/between_frames.py`).
 """
 
 import math
@@ -12,14 +11,12 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.body.dof import DOF, LOCAL
 from elbowroom.body.humanoid import Humanoid
+from elbowroom.body.pose.between_frames import ShownFrames, capsules_between, speeds_between
 from elbowroom.body.pose.kinematics import BodyModel, body_model
-from elbowroom.body.pose.whole_body import WholeBody, posed_capsules
-from elbowroom.body.root import SHOWN
+from elbowroom.body.pose.whole_body import WholeBody
 from elbowroom.by_reference import by_reference
 from elbowroom.clips.motion_set import MotionSet
-from elbowroom.control.shown.body_check import Frames
 from elbowroom.jit import brief_exact_kernel, helper, inner_exact_kernel, plain
 from elbowroom.planning.goal import natural_walk
 from elbowroom.planning.halving import begun, due, settle
@@ -30,11 +27,8 @@ from elbowroom.planning.shared import Shared
 Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
 Indices = NDArray[np.int64]
-Both = tuple[Floats, Floats]
 
-_SPARE = 4e-4  # metres that parts keep beyond what they may: screens turn joints by the shortest arcs, which is no more
 _WALKS = 1e-3  # metres that its own walk keeps at least: it is free for everybody
-_MORE, _BEND = 1.25, 5e-4  # of what the ends of an axis move, and metres: what its points move at most, measured
 _ONE = plain(1)  # part of the time at a time
 _HALVINGS = plain(9)  # of the time between two frames
 
@@ -55,15 +49,12 @@ class OwnBodyCheck:
     def __init__(self, model: BodyModel, motions: MotionSet) -> None:
         """`motions` are those that it walks with: where they bring parts nearer than the stock walk, these may come."""
         pairs, walk = self_pairs(model), self_pairs(model, natural_walk(motions))
-        limits = np.minimum(pairs.limits + _SPARE, walk.limits + (OVERLAP - _WALKS)).astype(np.float32)
+        limits = np.minimum(pairs.limits, walk.limits + (OVERLAP - _WALKS)).astype(np.float32)
         self._pairs = ShownPairs(model.whole, pairs.first, pairs.second, limits)
 
-    def free_between(self, frames: Frames, axes: tuple[Floats32, Floats32]) -> bool:
-        """Whether no part is deeper in another than it may be, from one frame to the next; or comes out of it.
-
-        `axes` are those of the capsules (C, 6, 1) in both frames, as seen from the root's place.
-        """
-        return bool(_proven(self._pairs, axes, frames.roots, frames.uppers))
+    def free_between(self, frames: ShownFrames) -> bool:
+        """Whether no part is deeper in another than it may be, from one frame to the next; or comes out of it."""
+        return bool(_proven(self._pairs, frames))
 
 
 _CHECKS: Shared[OwnBodyCheck] = Shared()
@@ -91,21 +82,6 @@ def _norm(x: float, y: float, z: float) -> float:
 
 
 @helper
-def _lengths(pairs: ShownPairs, axes: Floats32) -> Floats:
-    """How far the two of each pair can move against each other from one posture to the other of two (C, 6, 2): (P,).
-
-    No point of an axis moves farther than one of its ends.
-    """
-    ways, lengths = np.empty(len(axes)), np.empty(len(pairs.first))
-    for c in range(len(axes)):
-        moved = axes[c, :, 1] - axes[c, :, 0]
-        ways[c] = max(_norm(moved[0], moved[1], moved[2]), _norm(moved[3], moved[4], moved[5]))
-    for p in range(len(lengths)):
-        lengths[p] = _MORE * (ways[pairs.first[p]] + ways[pairs.second[p]]) + _BEND
-    return lengths
-
-
-@helper
 def _near(pairs: ShownPairs, lengths: Floats, axes: Floats32) -> Indices:
     """The pairs (K,) that could meet as they move by `lengths` (P,): by balls round their axes at first (C, 6, 2)."""
     count, near, balls = 0, np.empty(len(lengths), np.int64), np.empty((len(axes), 4))
@@ -121,26 +97,30 @@ def _near(pairs: ShownPairs, lengths: Floats, axes: Floats32) -> Indices:
     return near[:count]
 
 
-@brief_exact_kernel
-def _proven(pairs: ShownPairs, axes: tuple[Floats32, Floats32], roots: Both, uppers: Both) -> bool:
-    """Whether each pair is proven free all the way from one pose to another: roots (SHOWN,), upper bodies (LOCAL,).
+@helper
+def _on_the_spot(frames: ShownFrames) -> ShownFrames:
+    """The same without the way and the turn of the root: parts are no nearer to each other for that."""
+    return ShownFrames(frames.place, np.zeros(frames.roots.shape), frames.joints, frames.hips, frames.arcs)
 
-    Who is in himself already may go on to where he is no deeper. `axes` (C, 6, 1) are those of both.
+
+@brief_exact_kernel
+def _proven(pairs: ShownPairs, shown: ShownFrames) -> bool:
+    """Whether each pair is proven free all the way from one frame to another.
+
+    Who is in himself already may go on to where he is no deeper.
     """
-    both = np.empty((len(axes[0]), 6, 2), np.float32)
-    both[:, :, 0], both[:, :, 1] = axes[0][:, :, 0], axes[1][:, :, 0]
-    lengths = _lengths(pairs, both)
+    frames = _on_the_spot(shown)
+    both = capsules_between(pairs.body, frames, np.array([0.0, 1.0]))
+    speeds = speeds_between(pairs.body, frames, both)
+    lengths = speeds[pairs.first] + speeds[pairs.second]
     near = _near(pairs, lengths, both)
     if len(near) == 0:
         return True
     ends = _pair_gaps(pairs, near, both)
     if ends[0].min() < 0.0:
         return bool(ends[1].min() >= ends[0].min())
-    row, q, parts, shares = np.empty((1, SHOWN)), np.zeros((1, DOF)), np.empty(1, np.int64), np.empty(1)
+    parts, shares = np.empty(1, np.int64), np.empty(1)
     proof = begun(ends, lengths[near].reshape((1, len(near))), _ONE, 0.0, _HALVINGS)
     while due(proof, parts, shares) > 0:
-        row[0] = roots[0] + shares[0] * (roots[1] - roots[0])
-        q[0, DOF - LOCAL :] = uppers[0] + shares[0] * (uppers[1] - uppers[0])
-        row[0, :2] = 0.0
-        settle(proof, _pair_gaps(pairs, near, posed_capsules(pairs.body, q, row)), _ONE)
+        settle(proof, _pair_gaps(pairs, near, capsules_between(pairs.body, frames, shares)), _ONE)
     return bool(proof.least.min() >= 0.0)

@@ -245,11 +245,8 @@ class Showing:
 
         Of planners that see to that.
         """
-        check, own_body = self._around.check, self._around.own_body
-        if own_body is None:
-            return True
-        (first, last), (begin, end), _ = frames
-        return own_body.free_between(frames, (check.shown_axes(first, begin), check.shown_axes(last, end)))
+        own_body = self._around.own_body
+        return own_body is None or own_body.free_between(self._around.check.between(frames))
 
     def _frames_to(self, posed: Playback) -> Frames:
         """What is shown, and the pose that comes next."""

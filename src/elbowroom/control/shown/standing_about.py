@@ -4,31 +4,36 @@ Feet are held as high as `planning/model/footing.py` tells, and what their soles
 `feet/above_soles.py` tells.
 """
 
+import math
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.dof import DOF, LOCAL
+from elbowroom.body.gait.foot_state import Z
+from elbowroom.body.pose.between_frames import ShownFrames, capsules_between, capsules_on, speeds_between
 from elbowroom.body.pose.whole_body import WholeBody, posed_capsules, posed_legs
+from elbowroom.body.root import FOOT, RISES, ROOT_STATE, WITH_FEET
 from elbowroom.by_reference import by_reference
-from elbowroom.jit import brief_exact_kernel, inner_exact_kernel, plain
+from elbowroom.jit import brief_exact_kernel, helper, inner_exact_kernel, plain
 from elbowroom.planning.halving import begun, due, settle
 from elbowroom.planning.model.footing import floors_under, levelled, lift_feet
-from elbowroom.planning.model.levers import Levers, travel
 from elbowroom.world.obstacles.around_body import Standing, clearances_around
 
 Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
 Indices = NDArray[np.int64]
 Both = tuple[Floats, Floats]
+BothAxes = tuple[Floats32, Floats32]
 BothGaps = tuple[Floats32, Floats32]
 
 _ONE = plain(1)  # part of that time at a time
-HALVINGS = plain(9)  # of the time between two frames: the bound on a foot in its stride is many times what it moves
+HALVINGS = plain(9)  # of the time between two frames
 OTHERS = 2  # what is no foot
 EVEN = 5e-4  # metres by which what feet stand on may differ and be one height
-_TOUCHING = 0.01  # metres: who has more room is free, however much that is
+_QUICKLY, _FAR = 0.01, 0.1  # metres between two frames: soles of who goes up or down by more, or farther, are looked at
+_LIFTS = 0.005  # metres that the height at which feet are held changes at most beside what it does on the whole
 _OVER_GROUND = 0.004  # metres that feet are held higher where the ground that they stand on is left out
 
 
@@ -64,23 +69,17 @@ def hold_feet(body: ShownBody, q: Floats, roots: Floats, axes: Floats32) -> None
 
 
 @brief_exact_kernel
-def lifted_capsules(body: ShownBody, q: Floats, roots: Floats) -> Floats32:
-    """The capsules (C, 6, N) of postures (N, DOF) and root states (N, 7 or more), feet as high as they are held."""
-    axes = posed_capsules(body.whole, q, roots)
-    hold_feet(body, q, roots, axes)
-    return axes
-
-
-@brief_exact_kernel
-def capsules_of(body: ShownBody, root: Floats, upper: Floats, held: bool) -> Floats32:
+def held_capsules(body: ShownBody, root: Floats, upper: Floats, joints: tuple[Floats, Floats]) -> Floats32:
     """The capsules (C, 6, 1) of a root state and an upper body (LOCAL,), as seen from the root's place.
 
-    Feet are as high as they are `held`, or where they are shown.
+    They have these `posed_joints`. Feet are as high as they are held.
     """
     q, near = np.zeros((1, DOF)), root.copy().reshape((1, len(root)))
     q[0, DOF - LOCAL :] = upper
     near[0, :2] = 0.0
-    return lifted_capsules(body, q, near) if held else posed_capsules(body.whole, q, near)
+    axes = capsules_on(body.whole, near, joints[0].reshape((1, *joints[0].shape)), joints[1].reshape((1, 3)))
+    hold_feet(body, q, near, axes)
+    return axes
 
 
 @brief_exact_kernel
@@ -136,42 +135,86 @@ def gaps_about(
 
 
 @brief_exact_kernel
-def are_free(legs: ShownLegs, standing: Standing, axes: Floats32, x: float, z: float, floors: Floats) -> bool:
-    """Whether legs (L, 6, N) about a place (x, z) touch nothing that stands; feet keep above `floors` (2,)."""
+def held_between(body: ShownBody, frames: ShownFrames, uppers: Both, shares: Floats) -> Floats32:
+    """The capsules (C, 6, N) at `shares` (N,) of the time between two frames, as seen from the first one's place.
+
+    As screens show them, but for feet: those are as high as they are held. `uppers` (LOCAL,) are those of the frames.
+    """
+    axes = capsules_between(body.whole, frames, shares)
+    if len(body.feet) > 0:
+        roots, q = np.empty((len(shares), frames.roots.shape[1])), np.zeros((len(shares), DOF))
+        for n in range(len(shares)):
+            roots[n] = frames.roots[0] + shares[n] * (frames.roots[1] - frames.roots[0])
+            q[n, DOF - LOCAL :] = uppers[0] + shares[n] * (uppers[1] - uppers[0])
+        hold_feet(body, q, roots, axes)
+    return axes
+
+
+@helper
+def _go_far(roots: Floats) -> bool:
+    """Whether a foot goes up, down or elsewhere quickly between two root states (2, ROOT_STATE or more)."""
+    for side in range(2):
+        if abs(roots[1, RISES + 2 * side] - roots[0, RISES + 2 * side]) > _QUICKLY:
+            return True
+    for foot in range(ROOT_STATE, min(roots.shape[1], WITH_FEET), FOOT):
+        if math.hypot(roots[1, foot] - roots[0, foot], roots[1, foot + Z] - roots[0, foot + Z]) > _FAR:
+            return True
+    return False
+
+
+@helper
+def _soles_stay_above(body: ShownBody, frames: ShownFrames, uppers: Both, floors: Floats) -> bool:
+    """Whether feet are no deeper in what they stand on than they may be, at some moments between two frames.
+
+    That lies under their soles, so it is left out of their gaps. But a foot that stands is not quite still where hips
+    go straight and legs turn by the shortest arcs.
+    """
+    axes = held_between(body, frames, uppers, np.array([0.25, 0.5, 0.75]))
     for n in range(axes.shape[2]):
-        for c in legs.feet:
-            if min(axes[c, 1, n], axes[c, 4, n]) - legs.radii[c] < floors[legs.sides[c]]:
+        for c in body.feet:
+            if min(axes[c, 1, n], axes[c, 4, n]) - body.radii[c] < floors[body.sides[c]]:
                 return False
-        one = axes[:, :, n : n + 1].copy()
-        if gaps_about(legs.radii, legs.sides, standing, one, x, z, floors, _TOUCHING).min() < 0.0:
-            return False
     return True
 
 
 @brief_exact_kernel
-def proven_between(
-    body: ShownBody, standing: Standing, levers: Levers, roots: Both, uppers: Both, gaps: BothGaps, floors: Floats
-) -> bool:
-    """Whether each capsule is proven free of what stands, all the way from one pose to another, by `halving`.
+def ways_between(body: ShownBody, frames: ShownFrames, axes: BothAxes) -> Floats:
+    """No point of a capsule's axis goes farther between two frames, (C,) metres; `axes` (C, 6, 1) are those in both."""
+    both = np.empty((len(body.radii), 6, 2), np.float32)
+    both[:, :, 0], both[:, :, 1] = axes[0][:, :, 0], axes[1][:, :, 0]
+    for end in range(0, 6, 3):
+        both[:, end, 1] += frames.roots[1, 0]
+        both[:, end + 2, 1] += frames.roots[1, 1]
+    ways = speeds_between(body.whole, frames, both)
+    for foot in body.feet:
+        ways[foot] += _LIFTS
+    return ways
 
-    They are told by root states and upper bodies (LOCAL,), with their `gaps` (C,) above common `floors` (2,). Who has
-    as much room in between as he can move is free: more than twice that is not told apart.
+
+@brief_exact_kernel
+def proven_between(
+    body: ShownBody,
+    standing: Standing,
+    frames: ShownFrames,
+    uppers: Both,
+    axes: BothAxes,
+    gaps: BothGaps,
+    floors: Floats,
+) -> bool:
+    """Whether each capsule is proven free of what stands, all the way from one frame to another, by `halving`.
+
+    The capsules have `axes` (C, 6, 1) in both, and `gaps` (C,) above common `floors` (2,). Who has as much room in
+    between as he can move is free: more than twice that is not told apart.
     """
-    first, begin, x, z = roots[0], uppers[0], roots[0][0], roots[0][1]
-    root_way, upper_way, (parts, shares) = roots[1] - first, uppers[1] - begin, (np.empty(1, np.int64), np.empty(1))
-    ways, found = (
-        travel(levers, roots, uppers).reshape((1, len(body.radii))),
-        np.empty((1, len(body.radii)), np.float32),
-    )
-    near, q, ends = np.empty((1, len(first))), np.zeros((1, DOF)), np.empty((2, len(body.radii)), np.float32)
+    if len(body.feet) > 0 and _go_far(frames.roots) and not _soles_stay_above(body, frames, uppers, floors):
+        return False
+    x, z, (parts, shares) = frames.place[0], frames.place[1], (np.empty(1, np.int64), np.empty(1))
+    ways = ways_between(body, frames, axes).reshape((1, len(body.radii)))
+    found, ends = np.empty((1, len(body.radii)), np.float32), np.empty((2, len(body.radii)), np.float32)
     ends[0], ends[1] = gaps
     proof, enough = begun(ends, ways, _ONE, 0.0, HALVINGS), 2.0 * ways.max()
     while due(proof, parts, shares) > 0:
-        near[0] = first + shares[0] * root_way
-        q[0, DOF - LOCAL :] = begin + shares[0] * upper_way
-        near[0, 0] -= x
-        near[0, 1] -= z
-        axes = lifted_capsules(body, q, near)
-        found[0] = gaps_about(body.radii, body.sides, standing, axes, x, z, floors, enough)
+        held = held_between(body, frames, uppers, shares)
+        found[0] = gaps_about(body.radii, body.sides, standing, held, x, z, floors, enough)
         settle(proof, found, _ONE)
     return bool(proof.least.min() >= 0.0)
