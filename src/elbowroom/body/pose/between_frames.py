@@ -26,7 +26,7 @@ _STRAIGHT = 1e-6  # radians: who turns less goes straight
 _HEADING = 2  # its place in a root state
 
 
-class ShownFrames(NamedTuple):
+class FramePair(NamedTuple):
     """Two frames one after the other, as a screen is told of them."""
 
     place: Floats  # (2,) x and z of the first one's root
@@ -37,7 +37,7 @@ class ShownFrames(NamedTuple):
 
 
 @brief_exact_kernel
-def shown_frames(roots: Both, first: tuple[Floats, Floats], second: tuple[Floats, Floats]) -> ShownFrames:
+def frame_pair(roots: Both, first: tuple[Floats, Floats], second: tuple[Floats, Floats]) -> FramePair:
     """The frames of two root states (ROOT_STATE or more,), and of `posed_joints` in the first and in the second."""
     rows, joints, hips = np.empty((2, len(roots[0]))), np.empty((2, *first[0].shape)), np.empty((2, 3))
     rows[0], rows[1] = roots[0], roots[1]
@@ -54,7 +54,7 @@ def shown_frames(roots: Both, first: tuple[Floats, Floats], second: tuple[Floats
         for i in range(4):
             apart += (other[i] - one[i]) ** 2
         arcs[j] = 2.0 * math.asin(min(0.5 * math.sqrt(apart), 1.0))
-    return ShownFrames(roots[0][:2].copy(), rows, joints, hips, arcs)
+    return FramePair(roots[0][:2].copy(), rows, joints, hips, arcs)
 
 
 @inner_exact_kernel
@@ -65,7 +65,7 @@ def capsules_on(body: WholeBody, roots: Floats, joints: Floats, hips: Floats) ->
 
 
 @inner_exact_kernel
-def capsules_between(body: WholeBody, frames: ShownFrames, shares: Floats) -> Floats32:
+def capsules_between(body: WholeBody, frames: FramePair, shares: Floats) -> Floats32:
     """The capsules (C, 6, N) at `shares` (N,) of the time between two frames, as seen from the first one's place."""
     count = len(shares)
     roots, hips = np.empty((count, frames.roots.shape[1])), np.empty((count, 3))
@@ -85,7 +85,7 @@ def capsules_between(body: WholeBody, frames: ShownFrames, shares: Floats) -> Fl
 
 
 @inner_exact_kernel
-def speeds_between(body: WholeBody, frames: ShownFrames, axes: Floats32) -> Floats:
+def speeds_between(body: WholeBody, frames: FramePair, axes: Floats32) -> Floats:
     """How fast any point of each capsule's axis goes at most between two frames, (C,) metres in all that time.
 
     `axes` (C, 6, 2) are those in both frames, as seen from one place.
@@ -106,7 +106,7 @@ def _length(row: Floats | Floats32, first: int = 0) -> float:
 
 
 @helper
-def _bend(parents: NDArray[np.int64], offsets: Floats, frames: ShownFrames, joint: int, reach: float) -> float:
+def _bend(parents: NDArray[np.int64], offsets: Floats, frames: FramePair, joint: int, reach: float) -> float:
     """How much the velocity of a point can change, that is `reach` metres from the joint that carries it."""
     speed, bend = 0.0, 0.0
     while joint >= 0:

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from elbowroom.body.dof import DOF, LOCAL, LOWERING, DofGroup
 from elbowroom.body.humanoid import Humanoid
-from elbowroom.body.pose.between_frames import ShownFrames, shown_frames
+from elbowroom.body.pose.between_frames import FramePair, frame_pair
 from elbowroom.body.pose.kinematics import body_model
 from elbowroom.body.pose.whole_body import posed_joints
 from elbowroom.control.feet.above_soles import AboveSoles
@@ -87,7 +87,7 @@ class BodyCheck:
         self._above = [number for number in range(len(self._radii)) if number not in self._legs]
         self._knees: list[int] = np.flatnonzero(np.isin(self.model.body.joints, self.model.figure.legs[:, :2])).tolist()
         self._poses: tuple[_Pose, ...] = ()  # latest first
-        self._between: tuple[Frames, ShownFrames] | None = None  # the frames that were asked about last
+        self._between: tuple[Frames, FramePair] | None = None  # the frames that were asked about last
         self.others: Sequence[Neighbour] = ()  # other avatars, as they say that they will move
         self.told: Neighbour | None = None  # what they know of this one
 
@@ -197,12 +197,12 @@ class BodyCheck:
             return False
         return not self.accompanied or self._free_of_movers(frames, (before, after))
 
-    def between(self, frames: Frames) -> ShownFrames:
+    def between(self, frames: Frames) -> FramePair:
         """What a screen shows between two frames, for kernels; remembered of those that were asked about last."""
         known = self._between
         if known is None or known[0] is not frames:
             first, second = self._ends(frames)
-            self._between = known = frames, shown_frames(frames.roots, first.joints, second.joints)
+            self._between = known = frames, frame_pair(frames.roots, first.joints, second.joints)
         return known[1]
 
     def _ends(self, frames: Frames) -> tuple[_Pose, _Pose]:

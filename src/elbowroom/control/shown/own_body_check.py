@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.humanoid import Humanoid
-from elbowroom.body.pose.between_frames import ShownFrames, capsules_between, speeds_between
+from elbowroom.body.pose.between_frames import FramePair, capsules_between, speeds_between
 from elbowroom.body.pose.kinematics import BodyModel, body_model
 from elbowroom.body.pose.whole_body import WholeBody
 from elbowroom.by_reference import by_reference
@@ -52,7 +52,7 @@ class OwnBodyCheck:
         limits = np.minimum(pairs.limits, walk.limits + (OVERLAP - _WALKS)).astype(np.float32)
         self._pairs = ShownPairs(model.whole, pairs.first, pairs.second, limits)
 
-    def free_between(self, frames: ShownFrames) -> bool:
+    def free_between(self, frames: FramePair) -> bool:
         """Whether no part is deeper in another than it may be, from one frame to the next; or comes out of it."""
         return bool(_proven(self._pairs, frames))
 
@@ -98,13 +98,13 @@ def _near(pairs: ShownPairs, lengths: Floats, axes: Floats32) -> Indices:
 
 
 @helper
-def _on_the_spot(frames: ShownFrames) -> ShownFrames:
+def _on_the_spot(frames: FramePair) -> FramePair:
     """The same without the way and the turn of the root: parts are no nearer to each other for that."""
-    return ShownFrames(frames.place, np.zeros(frames.roots.shape), frames.joints, frames.hips, frames.arcs)
+    return FramePair(frames.place, np.zeros(frames.roots.shape), frames.joints, frames.hips, frames.arcs)
 
 
 @brief_exact_kernel
-def _proven(pairs: ShownPairs, shown: ShownFrames) -> bool:
+def _proven(pairs: ShownPairs, shown: FramePair) -> bool:
     """Whether each pair is proven free all the way from one frame to another.
 
     Who is in himself already may go on to where he is no deeper.

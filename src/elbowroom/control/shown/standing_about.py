@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from elbowroom.body.dof import DOF, LOCAL
 from elbowroom.body.gait.foot_state import Z
-from elbowroom.body.pose.between_frames import ShownFrames, capsules_between, capsules_on, speeds_between
+from elbowroom.body.pose.between_frames import FramePair, capsules_between, capsules_on, speeds_between
 from elbowroom.body.pose.whole_body import WholeBody, posed_capsules, posed_legs
 from elbowroom.body.root import FOOT, RISES, ROOT_STATE, WITH_FEET
 from elbowroom.by_reference import by_reference
@@ -135,7 +135,7 @@ def gaps_about(
 
 
 @brief_exact_kernel
-def held_between(body: ShownBody, frames: ShownFrames, uppers: Both, shares: Floats) -> Floats32:
+def held_between(body: ShownBody, frames: FramePair, uppers: Both, shares: Floats) -> Floats32:
     """The capsules (C, 6, N) at `shares` (N,) of the time between two frames, as seen from the first one's place.
 
     As screens show them, but for feet: those are as high as they are held. `uppers` (LOCAL,) are those of the frames.
@@ -163,7 +163,7 @@ def _go_far(roots: Floats) -> bool:
 
 
 @helper
-def _soles_stay_above(body: ShownBody, frames: ShownFrames, uppers: Both, floors: Floats) -> bool:
+def _soles_stay_above(body: ShownBody, frames: FramePair, uppers: Both, floors: Floats) -> bool:
     """Whether feet are no deeper in what they stand on than they may be, at some moments between two frames.
 
     That lies under their soles, so it is left out of their gaps. But a foot that stands is not quite still where hips
@@ -178,7 +178,7 @@ def _soles_stay_above(body: ShownBody, frames: ShownFrames, uppers: Both, floors
 
 
 @brief_exact_kernel
-def ways_between(body: ShownBody, frames: ShownFrames, axes: BothAxes) -> Floats:
+def ways_between(body: ShownBody, frames: FramePair, axes: BothAxes) -> Floats:
     """No point of a capsule's axis goes farther between two frames, (C,) metres; `axes` (C, 6, 1) are those in both."""
     both = np.empty((len(body.radii), 6, 2), np.float32)
     both[:, :, 0], both[:, :, 1] = axes[0][:, :, 0], axes[1][:, :, 0]
@@ -195,7 +195,7 @@ def ways_between(body: ShownBody, frames: ShownFrames, axes: BothAxes) -> Floats
 def proven_between(
     body: ShownBody,
     standing: Standing,
-    frames: ShownFrames,
+    frames: FramePair,
     uppers: Both,
     axes: BothAxes,
     gaps: BothGaps,
