@@ -137,8 +137,8 @@ def _price(cost: Floats32, away: Floats32, added: Floats32, clear: Floats32, mar
         cost[node] = total if clear[node] >= least else _INFINITE
 
 
-@helper
-def look(looks: Looks, nodes: NodeCosts, path: Longs, whole: Bools, weights: Weights) -> tuple[int, bool, int]:
+@inner_exact_kernel
+def look_along(looks: Looks, nodes: NodeCosts, path: Longs, whole: Bools, weights: Weights) -> tuple[int, bool, int]:
     """Look at the nodes of a path (n+1,), if it is not empty, and at all nodes of intervals that are `whole` (n,).
 
     Returns the first key time at which a node may cost more than was known, the number of key times if none does;
@@ -157,7 +157,7 @@ def look(looks: Looks, nodes: NodeCosts, path: Longs, whole: Bools, weights: Wei
 
 @helper
 def _looked_at(looks: Looks, nodes: NodeCosts, path: Longs, whole: Bools) -> tuple[Bools, int]:
-    """Look at nodes as `look` does; at which key times (n+1,) there were any, and the capsules checked."""
+    """Look at nodes as `look_along` does; at which key times (n+1,) there were any, and the capsules checked."""
     scratch, postures, known, carriers, obstacles, goals, extras = looks
     changed, checks, width = np.zeros(goals.shape[0], np.bool_), 0, postures.columns.shape[1]
     asked = np.empty(known.seen.shape[1], np.int64)

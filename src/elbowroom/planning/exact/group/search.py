@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from elbowroom.jit import exact_kernel, helper, plain
 from elbowroom.planning.exact.group.caches import GroupCache
 from elbowroom.planning.exact.group.carriers import Carriers, carrier_in, carriers_of
-from elbowroom.planning.exact.group.node_costs import Looks, NodeCosts, begun_costs, look
+from elbowroom.planning.exact.group.node_costs import Looks, NodeCosts, begun_costs, look_along
 from elbowroom.planning.exact.group.problem import GroupPath, GroupTask, Weights
 from elbowroom.planning.exact.lattice.closed_edges import ClosedEdges, new_closed_edges, reopen_first, with_tables
 from elbowroom.planning.exact.lattice.dynamic_programming import cheapest_path, settle_backward, widen
@@ -215,7 +215,7 @@ def _cheapest(
         reached, count = cheapest_path(lattice, work, first, narrow)
         path, settled = traced(lattice, work, reached), settled + count
         whole[:] = reached < last or looked >= _LOOKS
-        changed, dearer, count = look(looks, nodes, path[:0] if reached < last else path, whole, weights)
+        changed, dearer, count = look_along(looks, nodes, path[:0] if reached < last else path, whole, weights)
         checks, looked = checks + count, looked + 1
         if changed > last or (reached == last and not dearer):
             return reached, path, max(changed - 1, _BEGIN), settled, checks
@@ -230,7 +230,7 @@ def _settled(
 
     Returns the nodes settled and the capsules checked.
     """
-    changed, _, checks = look(looks, nodes, nodes.tables[:0], whole, weights)
+    changed, _, checks = look_along(looks, nodes, nodes.tables[:0], whole, weights)
     begin, last = min(max(changed - 1, _BEGIN), stale), nodes.tables.shape[0]
     if begin >= last:
         return widen(lattice, work), checks
@@ -250,7 +250,7 @@ def search_group(scratch: Scratch, cache: GroupCache, task: GroupTask, weights: 
     work, edges = new_work(horizon + 1, row), new_closed_edges(horizon, row)
     question, lattice, looks, nodes, most, checks = _begun(scratch, cache, task, weights, edges)
     if task.whole:
-        checks += look(looks, nodes, nodes.tables[:0], np.ones(horizon, np.bool_), weights)[2]
+        checks += look_along(looks, nodes, nodes.tables[:0], np.ones(horizon, np.bool_), weights)[2]
     entries = np.empty(horizon, np.int64)
     touches, stiff = np.zeros(horizon, np.bool_), np.empty(horizon + 1, np.bool_)
     first, deepest, spent, settled, gentle, harsh = _BEGIN, 0, most_rounds, 0, _GENTLY, False
