@@ -16,7 +16,7 @@ from elbowroom.body.pose.kinematics import body_model, pelvis_frames, posture_ca
 from elbowroom.body.root import HEIGHT, RISES, ROOT_STATE
 from elbowroom.control.others.neighbour import Neighbour, Walker
 from elbowroom.control.shown.body_check import BodyCheck, Frames
-from elbowroom.control.shown.standing_about import ways_between
+from elbowroom.control.shown.standing_about import held_between, ways_between
 from elbowroom.planning.exact.sweep.motion_bounds import stride_moves
 from elbowroom.planning.halving import ENOUGH, begun, due, settle
 from elbowroom.planning.model.levers import body_levers
@@ -177,6 +177,26 @@ def test_no_part_of_a_body_moves_farther_between_two_frames_than_is_said(
         assert (quickest <= bounds + 1e-4).all()
         nearest = max(nearest, float((quickest / bounds).max()))
     assert nearest > 0.9
+
+
+@pytest.mark.parametrize("drawn", [on_feet, carried, on_treads])
+def test_no_foot_that_is_held_higher_moves_farther_than_is_said(
+    drawn: Callable[[np.random.Generator], Frames],
+) -> None:
+    sill = {"type": "box", "center": [0.0, 0.05, 5.0], "size": [2.0, 0.1, 0.3]}
+    check = BodyCheck(HUMANOID, Scene.of("sill", [sill], finish=(0.0, 9.0)))
+    rng, shares = np.random.default_rng(1), np.linspace(0.0, 1.0, 101)
+    assert len(check.soles.body.feet) > 0
+    for _ in range(150):
+        frames = drawn(rng)
+        ends, pair = (
+            [check.axes(*each) for each in zip(frames.roots, frames.uppers, strict=True)],
+            check.between(frames),
+        )
+        held = held_between(check.soles.body, pair, frames.uppers, shares).astype(np.float64)
+        steps = np.linalg.norm(np.diff(held.reshape(len(RADII), 2, 3, -1), axis=3), axis=2)
+        quickest = 100.0 * steps.max(axis=(1, 2))
+        assert (quickest <= ways_between(check.soles.body, pair, (ends[0], ends[1])) + 1e-4).all()
 
 
 def capsule(axis: Floats, radius: float) -> tuple[coal.Capsule, coal.Transform3s]:

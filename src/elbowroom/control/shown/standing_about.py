@@ -33,7 +33,7 @@ HALVINGS = plain(9)  # of the time between two frames
 OTHERS = 2  # what is no foot
 EVEN = 5e-4  # metres by which what feet stand on may differ and be one height
 _QUICKLY, _FAR = 0.01, 0.1  # metres between two frames: soles of who goes up or down by more, or farther, are looked at
-_LIFTS = 0.005  # metres that the height at which feet are held changes at most beside what it does on the whole
+_LIFTS = 0.015  # metres that the height at which feet are held changes at most beside what it does on the whole
 _OVER_GROUND = 0.004  # metres that feet are held higher where the ground that they stand on is left out
 
 
