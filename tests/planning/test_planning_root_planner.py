@@ -13,7 +13,7 @@ from elbowroom.body.pose.kinematics import body_model, leg_capsules
 from elbowroom.body.root import ROOT_STATE, RootState
 from elbowroom.planning.command import Command
 from elbowroom.planning.root.path import RootPath
-from elbowroom.planning.root.plan import RootPlan, RootPlanKind
+from elbowroom.planning.root.plan import Patience, RootPlan, RootPlanKind
 from elbowroom.planning.root.planner import RootPlanner
 from elbowroom.planning.root.settings import RootMotionSettings
 from elbowroom.world.obstacles.clearance import clearance
@@ -281,3 +281,22 @@ def test_a_small_and_a_tall_body_find_their_own_way() -> None:
             assert least_clearance(plan.path, gap, body) > 0.0
             state = RootState(*plan.path.states[1].tolist())
         assert (state.z > 3.0) == passes
+
+
+def test_who_has_no_patience_is_offered_in_several_plans_what_the_patient_are_in_one() -> None:
+    """One stands before a wall: ways out are looked for from eighteen places, and there is none."""
+    before_wall, asked = scene_of(wall(2.0, -3.0, 3.0)), (RootState(z=1.6), FORWARD, 12, 0.15)
+    patient = [plan.kind for plan in RootPlanner(BODY, before_wall).candidates(*asked)]
+    looked_at: list[int] = []
+
+    def enough(checks: int) -> bool:
+        looked_at.append(checks)
+        return len(looked_at) % 4 == 0
+
+    planner, plans, offered = RootPlanner(BODY, before_wall), 0, list[RootPlanKind]()
+    while len(offered) < len(patient):
+        offered = [plan.kind for plan in planner.candidates(*asked, patience=Patience(enough=enough))]
+        plans += 1
+    assert offered == patient
+    assert plans == 1 + len(looked_at) // 4 > 2
+    assert min(looked_at) > 0

@@ -10,6 +10,7 @@ from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.root import RootState
 from elbowroom.planning.command import Command
 from elbowroom.planning.root.line.way_ahead import leg_at, way_ahead
+from elbowroom.planning.root.path import RootPath
 from elbowroom.planning.root.plan import RootPlanKind
 from elbowroom.planning.root.planner import RootPlanner
 from elbowroom.world.scene import Scene
@@ -62,19 +63,40 @@ def test_a_path_along_a_way_goes_on_as_it_was_round_the_corner_and_stands_at_the
     assert corner < 0.4
 
 
-def test_who_would_meet_a_corner_by_cutting_it_keeps_closer_to_the_way() -> None:
+def aslant() -> Scene:
     """A passage of 0.46 m between the corners of two blocks, aslant, as a door in a corner of a house has it."""
     blocks = [((-2.0, 0.0), (-6.0, -0.3)), ((0.46, 3.0), (0.15, 4.0))]  # from where to where along x and z
     obstacles = [
         {"type": "box", "center": [0.5 * (a + b), 1.1, 0.5 * (c + d)], "size": [b - a, 2.2, d - c], "yaw": 0.0}
         for (a, b), (c, d) in blocks
     ]
-    scene = Scene.from_dict({**Scene.load("empty").to_dict(), "obstacles": obstacles})
-    way = ((-1.3, 0.0), (-0.1, 0.0), (0.26, -0.18), (0.74, -0.72), (1.5, -0.66))
+    return Scene.from_dict({**Scene.load("empty").to_dict(), "obstacles": obstacles})
+
+
+THROUGH = ((-1.3, 0.0), (-0.1, 0.0), (0.26, -0.18), (0.74, -0.72), (1.5, -0.66))
+
+
+def test_who_would_meet_a_corner_by_cutting_it_keeps_closer_to_the_way() -> None:
     start = RootState(-0.48, 0.01, 0.5 * math.pi, 0.66)
-    plan = RootPlanner(Humanoid.default(), scene).plan(start, Command(forward=1.0, way=way), 16, INTERVAL)
+    plan = RootPlanner(Humanoid.default(), aslant()).plan(start, Command(forward=1.0, way=THROUGH), 16, INTERVAL)
     assert plan.kind is RootPlanKind.STRAIGHT
     assert plan.path.states[-1, 0] > 1.0
+
+
+def test_a_path_that_is_made_longer_goes_on_as_it_was() -> None:
+    """Asked for anew, it would keep closer to the way from its first step on, for what has come into view."""
+    planner, command = RootPlanner(Humanoid.default(), aslant()), Command(forward=1.0, way=THROUGH)
+    start = RootState(-0.76, 0.0, 0.5 * math.pi, 0.66)
+    before = planner.plan(start, command, 3, INTERVAL)
+    state, left = RootState(*before.path.states[1].tolist()), RootPath(INTERVAL, INTERVAL, before.path.states[1:])
+    anew = planner.plan(state, command, 16, INTERVAL, INTERVAL)
+    longer = planner.prolonged(left, state, command, 16, INTERVAL, INTERVAL)
+    assert longer.path.horizon == 16
+    assert longer.path.start_time == INTERVAL
+    assert np.array_equal(longer.path.states[:3], left.states)
+    assert not np.allclose(anew.path.states[:3], left.states, atol=1e-3)
+    on = planner.plan(RootState(*left.states[-1].tolist()), command, 14, INTERVAL, 3 * INTERVAL)
+    assert np.array_equal(longer.path.states[2:], on.path.states)
 
 
 def test_a_slower_walk_along_a_way_loses_what_it_is_slower_by() -> None:

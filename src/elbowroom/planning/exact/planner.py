@@ -33,6 +33,8 @@ from elbowroom.world.scene import Scene
 
 Floats = NDArray[np.float64]
 
+_WALKED_ON = RootPlanKind.STRAIGHT, RootPlanKind.DETOUR  # paths at full speed, which can be made longer
+
 
 class ExactPlanner:
     """Plans motion for one humanoid in one scene; it remembers the last plan and keeps to it while it is good."""
@@ -149,10 +151,12 @@ class ExactPlanner:
 
     def _with_new_end(self, left: FullPlan, root_planner: RootPlanner, query: MotionQuery) -> FullPlan | None:
         """What is left of a walk that has become too short, and beyond that a new end; None if there is none."""
+        if left.root.kind not in _WALKED_ON:
+            return None
         near = self._horizon(root_planner, query)
         far = near + self._spare(query)
-        root = root_planner.plan(query.root, query.command, far, query.interval, query.time)
-        if root.lost >= root_planner.settings.untroubled:
+        root = root_planner.prolonged(left.root.path, query.root, query.command, far, query.interval, query.time)
+        if root.lost >= root_planner.settings.untroubled or root.kind is not left.root.kind:
             return None
         roots = root, root.along(root.path.until(near))
         plans = (prolonged(self._body, left, one, query, Effort.QUICK) for one in roots)

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 from elbowroom.planning.command import Command
 from elbowroom.planning.root.memory import RootMemory
-from elbowroom.planning.root.plan import RootPlan
+from elbowroom.planning.root.plan import Pause, RootPlan
 from elbowroom.planning.root.query import Asked
 from elbowroom.planning.stillness import UNMOVED
 
@@ -33,7 +33,7 @@ class _Offers(NamedTuple):
     """Those that were made so far, and the making of more."""
 
     made: list[Offer]
-    more: Iterator[Offer]
+    more: Iterator[Offer | Pause]
 
 
 class OffersFromHere:
@@ -43,7 +43,7 @@ class OffersFromHere:
         self._known: dict[tuple[str, Command, int, float], _Offers] = {}
         self._here: tuple[float, ...] = ()
 
-    def again(self, kind: str, asked: Asked, make: Callable[[], Iterator[Offer]]) -> Iterator[Offer]:
+    def again(self, kind: str, asked: Asked, make: Callable[[], Iterator[Offer | Pause]]) -> Iterator[Offer | Pause]:
         """The offers of a `kind` to who stands and asks; those that nobody has asked for yet are made."""
         here = tuple(asked.start)
         if not self._here or max(abs(a - b) for a, b in zip(here, self._here, strict=True)) > UNMOVED:
@@ -57,6 +57,9 @@ class OffersFromHere:
         made, more = self._known[name]
         for offer in list(made):
             yield offer.later(asked.start_time)
-        for offer in more:
-            made.append(offer)
-            yield offer.later(asked.start_time, anew=True)
+        for found in more:
+            if isinstance(found, Pause):
+                yield found
+            else:
+                made.append(found)
+                yield found.later(asked.start_time, anew=True)

@@ -1,5 +1,6 @@
 """What the root planner is told once, and what it hands back."""
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from enum import Enum
 from typing import NamedTuple
@@ -76,3 +77,22 @@ class RootPlan(NamedTuple):
     def going_on(self, path: RootPath) -> "RootPlan":
         """The same plan on a path for which nothing was searched any more."""
         return self._replace(path=path, checks=0, nanoseconds=0)
+
+
+class Pause(NamedTuple):
+    """Nothing was found yet: whoever has waited long enough can leave, and come back for the rest."""
+
+    checks: int  # postures and places whose clearance was computed since the last offer or pause
+
+
+def never(checks: int) -> bool:
+    """Who is never tired of waiting, however much was looked at."""
+    del checks
+    return False
+
+
+class Patience(NamedTuple):
+    """How long whoever asks for paths is willing to wait for more of them."""
+
+    grids: int = 4  # in so many evasions are looked for
+    enough: Callable[[int], bool] = never  # asked in each `Pause`, with its checks: whether that will do for now

@@ -9,7 +9,10 @@ show, and if from each of its key frames a stop would be free too. So the next p
 
 import math
 from collections.abc import Callable, Iterator, Sequence
+from functools import partial
 from typing import NamedTuple
+
+import numpy as np
 
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.root import RootState
@@ -24,7 +27,7 @@ from elbowroom.planning.root.motion import MotionBounds
 from elbowroom.planning.root.offers import Offer, OffersFromHere
 from elbowroom.planning.root.path import RootPath
 from elbowroom.planning.root.paths import RootPaths
-from elbowroom.planning.root.plan import RootPlan, RootPlanKind, RootPlannerSettings
+from elbowroom.planning.root.plan import Patience, Pause, RootPlan, RootPlanKind, RootPlannerSettings
 from elbowroom.planning.root.query import Asked
 from elbowroom.planning.root.way_out import WayOut, WayOutFinder, WayOutSettings
 from elbowroom.planning.stillness import is_still
@@ -35,6 +38,7 @@ _SLOW = 0.1  # m/s: who walks faster has somewhere to go
 _TRIES = 2  # ways out that are taken one after the other, without getting farther
 _FARTHER = 0.15  # metres along a line that are worth another
 _BACK = 0.05  # metres along a line: less is no way back
+PATIENT = Patience()
 
 
 class _Idea(NamedTuple):
@@ -119,6 +123,22 @@ class RootPlanner:
         """
         return self._maker.commanded(Asked(start, command, horizon, interval, start_time), pace)
 
+    def stopped(
+        self, start: RootState, command: Command, horizon: int, interval: float, start_time: float = 0.0
+    ) -> RootPlan:
+        """To a stand, whatever is commanded; arguments as for `plan`. What it remembers stays as it is."""
+        plan = self._paths.stopped(Asked(start, command, horizon, interval, start_time))
+        return plan._replace(kind=RootPlanKind.SHORTENED)
+
+    def prolonged(
+        self, left: RootPath, start: RootState, command: Command, horizon: int, interval: float, start_time: float = 0.0
+    ) -> RootPlan:
+        """What is `left` of a path from the start on, made longer to `horizon` key intervals, more than it has.
+
+        So who goes on does as was planned. The other arguments are as for `plan`, and so is what the new end is.
+        """
+        return self._maker.prolonged(Asked(start, command, horizon, interval, start_time), left)
+
     def candidates(
         self,
         start: RootState,
@@ -127,26 +147,26 @@ class RootPlanner:
         interval: float,
         start_time: float = 0.0,
         paces: Sequence[float] = (),
-        grids: int = 4,
+        patience: Patience = PATIENT,
     ) -> Iterator[RootPlan]:
         """Paths for an upper body to choose from, the one that costs least first; arguments as for `plan`.
 
         The path as commanded, evasions from it, and slower ones at the shares `paces` of the wanted speed. Evasions
         along the axis of a gap and those that lead far aside are thought of when the others have become dear, as far
-        as so many `grids` suffice. Those that are not free of what moves come last (`RootPlan.free`). The last one that
-        was given is the one that is being followed; whoever takes an earlier one says so (`follow`).
+        as the `patience` reaches; where it ends for who stands, the next who asks from there gets those that are left.
+        Those that are not free of what moves come last (`RootPlan.free`). The last one that was given is the one that
+        is being followed; whoever takes an earlier one says so (`follow`).
         """
-        asked = Asked(start, command, horizon, interval, start_time)
-        for offer in self._offers(f"{grids} grids", asked, lambda: self._maker.candidates(asked, paces, grids)):
-            yield offer.plan
+        asked, grids = Asked(start, command, horizon, interval, start_time), patience.grids
+        make = partial(self._maker.candidates, asked, paces, grids)
+        return (offer.plan for offer in self._offers(f"{grids} grids", asked, make, patience))
 
     def steps_aside(
         self, start: RootState, command: Command, horizon: int, interval: float, start_time: float = 0.0
     ) -> Iterator[RootPlan]:
         """Short steps out of the way of what moves, free ones; arguments and duties as for `candidates`."""
         asked = Asked(start, command, horizon, interval, start_time)
-        for offer in self._offers("steps aside", asked, lambda: self._maker.steps_aside(asked)):
-            yield offer.plan
+        return (offer.plan for offer in self._offers("steps aside", asked, lambda: self._maker.steps_aside(asked)))
 
     def kept(
         self, path: RootPath, start: RootState, command: Command, horizon: int, interval: float, start_time: float = 0.0
@@ -157,7 +177,13 @@ class RootPlanner:
         return self._paths.kept(Asked(start, command, horizon, interval, start_time), path.states)
 
     def ways_out(
-        self, start: RootState, command: Command, horizon: int, interval: float, start_time: float = 0.0
+        self,
+        start: RootState,
+        command: Command,
+        horizon: int,
+        interval: float,
+        start_time: float = 0.0,
+        patience: Patience = PATIENT,
     ) -> Iterator[tuple[RootPlan, int]]:
         """Paths that step to where the command leads on, the cheapest first; arguments and duties as for `candidates`.
 
@@ -167,14 +193,24 @@ class RootPlanner:
         if line is None or wanted_speed(command, self.settings.motion) < SLOW:
             return  # who is in no hurry stays
         asked, out = Asked(start, command, horizon, interval, start_time), (line, None, before)
-        for offer in self._offers("ways out", asked, lambda: self._maker.out(asked, *out)):
+        for offer in self._offers("ways out", asked, lambda: self._maker.out(asked, *out), patience):
             yield offer.plan, 0 if offer.memory.way_out is None else offer.memory.way_out.length
 
-    def _offers(self, kind: str, asked: Asked, make: Callable[[], Iterator[Offer]]) -> Iterator[Offer]:
+    def _offers(
+        self,
+        kind: str,
+        asked: Asked,
+        make: Callable[[], Iterator[Offer | Pause]],
+        patience: Patience = PATIENT,
+    ) -> Iterator[Offer]:
         """What is made, or, for who stands among what stands, what was offered before; each is taken in turn."""
         self._offered.clear()
         rests = not len(self.moving) and is_still(asked.start.as_array()[3:6])
         for offer in self._from_here.again(kind, asked, make) if rests else make():
+            if isinstance(offer, Pause):
+                if patience.enough(offer.checks) and rests:
+                    return
+                continue
             self._offered.append(offer)
             self.memory = offer.memory
             yield offer
@@ -200,35 +236,54 @@ class _OfferMaker:
 
     def commanded(self, asked: Asked, pace: float) -> RootPlan:
         """The path as it is asked for, at a share of the speed."""
-        command, memory, evading = asked.command, self.memory, self.memory.evading
-        line: TravelLine | None = None
+        leg = self.memory.leg_of(asked.command.way, asked.start)
+        line, plan = self._as_commanded(asked, leg, pace)
+        self._remember(asked.command, line, leg, plan)
+        return plan
+
+    def prolonged(self, asked: Asked, left: RootPath) -> RootPlan:
+        """What is left of a path, and from its end on the path as it is asked for."""
+        memory, command = self.memory, asked.command
+        end, last = RootState(*left.states[-1].tolist()), left.horizon
+        later = Asked(end, command, asked.horizon - last, asked.interval, left.time_of(last))
+        line, rest = self._as_commanded(later, memory.leg_of(command.way, end), 1.0)
         leg = memory.leg_of(command.way, asked.start)
+        states = np.concatenate([left.states, rest.path.states[1:]])
+        plan = rest.along(RootPath(asked.start_time, asked.interval, states))
+        self._remember(command, line_of(command.way, leg, command) if command.way else line, leg, plan)
+        return plan
+
+    def _as_commanded(self, asked: Asked, leg: int, pace: float) -> tuple[TravelLine | None, RootPlan]:
+        """The line of travel, if there is one, and the path as it is asked for, along that or a `leg` of a way."""
+        command, memory = asked.command, self.memory
         if command.idle:
-            plan = self._paths.stopped(asked)
-        elif command.turns:
-            plan, evading = self._paths.steered(asked, pace), None
-        elif command.way:
-            line, plan = line_of(command.way, leg, command), self._paths.along(asked, leg, pace)
-        else:
-            line = memory.travel_line(asked.start, command, self.settings.motion, self.settings.widest_detour)
-            plan = self._paths.travelled(asked, line, pace)
-        out = memory.way_out
+            return None, self._paths.stopped(asked)
+        if command.turns:
+            return None, self._paths.steered(asked, pace)
+        if command.way:
+            return line_of(command.way, leg, command), self._paths.along(asked, leg, pace)
+        line = memory.travel_line(asked.start, command, self.settings.motion, self.settings.widest_detour)
+        return line, self._paths.travelled(asked, line, pace)
+
+    def _remember(self, command: Command, line: TravelLine | None, leg: int, plan: RootPlan) -> None:
+        """Remember the path as it is asked for."""
+        memory, turned = self.memory, command.turns and not command.idle
+        evading, out = None if turned else memory.evading, memory.way_out
         if out is not None and (line is None or not out.line.is_like(line)):
             out = None
         self.memory = RootMemory(line, plan.path.states, evading, out, _gets_past(plan), command.way, leg)
-        return plan
 
-    def candidates(self, asked: Asked, paces: Sequence[float], most: int) -> Iterator[Offer]:
+    def candidates(self, asked: Asked, paces: Sequence[float], most: int) -> Iterator[Offer | Pause]:
         """What `RootPlanner.candidates` offers."""
         touched: list[Offer] = []
         for offer in self._candidates(asked, paces, most):
-            if offer.plan.free:
+            if isinstance(offer, Pause) or offer.plan.free:
                 yield offer
             else:
                 touched.append(offer)
         yield from touched
 
-    def _candidates(self, asked: Asked, paces: Sequence[float], most: int) -> Iterator[Offer]:
+    def _candidates(self, asked: Asked, paces: Sequence[float], most: int) -> Iterator[Offer | Pause]:
         """The same, those that something comes into among the others."""
         before = self.memory.way_out
         commanded = self.commanded(asked, 1.0)
@@ -280,7 +335,9 @@ class _OfferMaker:
         for plan in self._paths.steps_aside(asked):
             yield self._offer(plan, evading, None)
 
-    def out(self, asked: Asked, line: TravelLine, evading: Evading | None, before: WayOut | None) -> Iterator[Offer]:
+    def out(
+        self, asked: Asked, line: TravelLine, evading: Evading | None, before: WayOut | None
+    ) -> Iterator[Offer | Pause]:
         """Ways out for who stands, where all else stands; not again and again without getting farther."""
         if self._paths.restless or math.hypot(asked.start.forward, asked.start.lateral) > _SLOW:
             return
@@ -288,7 +345,11 @@ class _OfferMaker:
         if before is not None and before.line == line and ahead < before.ahead + _FARTHER:
             tries, ahead = before.tries + 1, before.ahead
         if tries <= _TRIES:
-            for plan, path, length in self._ways_out.ways(asked, line):
+            for found in self._ways_out.ways(asked, line):
+                if isinstance(found, Pause):
+                    yield found
+                    continue
+                plan, path, length = found
                 yield self._offer(plan, evading, WayOut(line, path, length, ahead, tries))
 
     def _left_of(self, way_out: WayOut | None, asked: Asked) -> RootPlan | None:

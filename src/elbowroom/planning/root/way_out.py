@@ -19,7 +19,7 @@ from elbowroom.body.root import RootState
 from elbowroom.planning.root.line.line import TravelLine
 from elbowroom.planning.root.path import RootPath
 from elbowroom.planning.root.paths import RootPaths
-from elbowroom.planning.root.plan import RootPlan, RootPlanKind
+from elbowroom.planning.root.plan import Pause, RootPlan, RootPlanKind
 from elbowroom.planning.root.query import Asked
 
 Floats = NDArray[np.float64]
@@ -95,7 +95,7 @@ class WayOutFinder:
     def __init__(self, settings: WayOutSettings, paths: RootPaths) -> None:
         self.settings, self._paths = settings, paths
 
-    def ways(self, asked: Asked, line: TravelLine) -> Iterator[tuple[RootPlan, RootPath, int]]:
+    def ways(self, asked: Asked, line: TravelLine) -> Iterator[tuple[RootPlan, RootPath, int] | Pause]:
         """Ways out from where `asked` stands, to where its command leads on along `line`; the cheapest first.
 
         With each the whole path over the steps and on, and how many key intervals the steps take.
@@ -105,12 +105,10 @@ class WayOutFinder:
         for place in islice(self._places(asked), self.settings.free):
             at, evading = asked._replace(start=place.end), place.roomy and grids > 0
             grids -= evading
-            for plan in self._onward(at, line, evading=evading):
-                x, z = plan.path.states[-1, :2].tolist()
-                if plan.kind is not RootPlanKind.STOPPED and line.coordinates(x, z)[0] > beyond:
-                    yield _joined(asked, place, plan._replace(checks=self._paths.checks - before))
-                    before = self._paths.checks
-                    break
+            onward = (plan for plan in self._onward(at, line, evading=evading) if _leads_beyond(plan, line, beyond))
+            plan, checks = next(onward, None), self._paths.checks - before
+            before += checks
+            yield Pause(checks) if plan is None else _joined(asked, place, plan._replace(checks=checks))
 
     def _places(self, asked: Asked) -> Iterator[_Place]:
         """Places that free steps lead to, the cheapest first; those beyond one are looked for when it was given."""
@@ -154,6 +152,12 @@ class WayOutFinder:
                 [(line, 1.0)] if axis is None else [(line, 1.0), (axis, 1.0), (axis, fine.settings.short)]
             ):
                 yield from (plan for plan, _ in self._paths.evaded(at, line, along, fine, None, share))
+
+
+def _leads_beyond(plan: RootPlan, line: TravelLine, beyond: float) -> bool:
+    """Whether a path leads farther than so many metres along a line."""
+    x, z = plan.path.states[-1, :2].tolist()
+    return plan.kind is not RootPlanKind.STOPPED and line.coordinates(x, z)[0] > beyond
 
 
 def _joined(asked: Asked, place: _Place, onward: RootPlan) -> tuple[RootPlan, RootPath, int]:

@@ -36,6 +36,8 @@ _ABOUT = 0.1  # metres by which a body's height may differ from the ground about
 _INSIDE = 1e-9  # m², by which a place may lie outside of a triangle
 _ALONG, _ACROSS = 13, 3  # places of a sole that are looked at
 _EASED, _AROUND, _RINGS = 0.36, 10, 4  # metres about a body whose ground counts for its height; places there
+_ANGLES = 2.0 * math.pi * (np.arange(_AROUND) + 0.5) / _AROUND
+_ASIDE, _ONWARD = np.sin(_ANGLES), np.cos(_ANGLES)  # (_AROUND,) directions in which they lie
 _SQUARES = 0.5 * _AROUND * _EASED**2 * (_RINGS + 1) * (2 * _RINGS + 1) / (6 * _RINGS)  # of how far these are along x
 EVEN_STAIR = 0.65  # metres that a stair of the usual kind rises in a metre, at most
 _LIFTED, _MOST_LIFTED = 0.3, 0.12  # metres that a body is carried higher where it is steeper by one in one; at most
@@ -264,10 +266,10 @@ def eased_height(ground: Ground, start: tuple[float, float, float], x: float, z:
     middle = height_along(ground, (start[0], under_body(ground, start[0], start[1], start[2]), start[2]), x, z)
     total, squares, along_x, along_z = 0.0, 0.0, 0.0, 0.0
     for i in range(_AROUND):
-        angle, near = 2.0 * math.pi * (i + 0.5) / _AROUND, middle
+        near = middle
         for j in range(_RINGS):
             away = _EASED * (j + 1.0) / _RINGS
-            dx, dz = away * math.sin(angle), away * math.cos(angle)
+            dx, dz = away * _ASIDE[i], away * _ONWARD[i]
             found = height_at(ground, x + dx, z + dz, near)
             if found > _NONE:
                 near = found
@@ -290,10 +292,10 @@ def top_about(ground: Ground, x: float, height: float, z: float, radius: float) 
     if ground.plain or level_about(ground, x, z, radius, height) > _NONE:
         return top
     for i in range(_AROUND):
-        angle, near = 2.0 * math.pi * (i + 0.5) / _AROUND, height
+        near = height
         for j in range(_RINGS):
             away = radius * (j + 1.0) / _RINGS
-            found = height_at(ground, x + away * math.sin(angle), z + away * math.cos(angle), near)
+            found = height_at(ground, x + away * _ASIDE[i], z + away * _ONWARD[i], near)
             if found > _NONE:
                 near = found
             top = max(top, near)

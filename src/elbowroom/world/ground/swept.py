@@ -62,9 +62,10 @@ def _highest(sole: Sole, gone: float, turned: float, along: Floats, across: Floa
     for i in range(along.shape[0]):
         ahead = along[i] - gone
         for j in range(across.shape[0] if low - _EDGE <= ahead <= high + _EDGE else 0):
-            before, aside = ahead * cosine + across[j] * sine, across[j] * cosine - ahead * sine
-            if -sole.back - _EDGE <= before <= sole.ahead + _EDGE and abs(aside) <= sole.aside + _EDGE:
-                highest = max(highest, found[i, j])
+            if found[i, j] > highest:
+                before, aside = ahead * cosine + across[j] * sine, across[j] * cosine - ahead * sine
+                if -sole.back - _EDGE <= before <= sole.ahead + _EDGE and abs(aside) <= sole.aside + _EDGE:
+                    highest = found[i, j]
     return highest
 
 

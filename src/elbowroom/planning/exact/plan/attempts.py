@@ -68,7 +68,10 @@ class Attempts:
         self._work, self._postponed = 0.0, False
         self._place = _PLACE_UNEVEN if uneven else _PLACE
         leisure, haste = (_MOST_AMONG_MOVING, _MOST_AMONG_MOVING_IN_A_HURRY) if moving else (_MOST, _MOST_IN_A_HURRY)
-        self._most = (_WAITED_FOR * haste if query.hurry else haste) if hurry else leisure
+        if hurry or (uneven and not stands and not moving):
+            self._most = _WAITED_FOR * haste if query.hurry else haste
+        else:
+            self._most = leisure
         here, stood = (*query.root, *query.upper.tolist()) if stands else None, self._stood
         if here is None or stood is None or max(abs(a - b) for a, b in zip(here, stood, strict=True)) > _NEAR:
             self._failed.clear()
@@ -85,6 +88,11 @@ class Attempts:
     def enter_root(self, checks: int) -> None:
         """A root path was made, for which so many places and postures were looked at."""
         self._work += self._place * checks
+
+    def enough(self, checks: int) -> bool:
+        """Whether a search for a root path that has found nothing yet, and looked at so many more, is to be left."""
+        self.enter_root(checks)
+        return self.spent
 
     def enter(self, path: RootPath, effort: Effort, upper: UpperPlan) -> None:
         """A path was sought for the upper body."""

@@ -10,7 +10,7 @@ from elbowroom.planning.exact.plan.safe_end import SafeEnd
 from elbowroom.planning.exact.plan.task import STANDING, PlanTask, Tried, place_of, walked
 from elbowroom.planning.exact.plan.upper_body_search import Effort, UpperPlan
 from elbowroom.planning.root.path import RootPath
-from elbowroom.planning.root.plan import RootPlan, RootPlanKind
+from elbowroom.planning.root.plan import Patience, RootPlan, RootPlanKind
 
 _FARTHER = 0.05  # metres that a slower path must get beyond the place where a faster one failed
 _THOUGHT_THROUGH = 4  # root paths on which all groups are searched together
@@ -38,7 +38,15 @@ class NewPlan:
             found = self._all_together(tried)
         if found is None and task.stands and not task.attempts.spent:
             found = self._way_out()
+        found = found or (None if tried else self._waiting(tried))
         return found or SafeEnd(task).found(tried)
+
+    def _waiting(self, tried: list[Tried]) -> FullPlan | None:
+        """A stand, where the search for root paths was left before it had found one; the next plan goes on with it."""
+        root = self.task.root_planner.stopped(*self.task.asked)
+        upper = self.task.upper_body(root.path, self.task.least)
+        tried.append(Tried(root, upper))
+        return FullPlan(root, upper.plan, upper.margins) if upper.reached == root.path.horizon else None
 
     @property
     def _attempts(self) -> Attempts:
@@ -51,8 +59,8 @@ class NewPlan:
         The paths that were of no use are added to `tried`.
         """
         task, ((before, blocked_at), self._attempts.left_off) = self.task, (self._left_off(), None)
-        grids = _GRIDS_STANDING if task.stands else _GRIDS
-        for number, root in enumerate(task.root_planner.candidates(*task.asked, task.body.settings.paces, grids)):
+        patience = Patience(_GRIDS_STANDING if task.stands else _GRIDS, self._attempts.enough)
+        for number, root in enumerate(task.root_planner.candidates(*task.asked, task.body.settings.paces, patience)):
             self._attempts.enter_root(root.checks)
             if number < before or (number > 0 and self._leads_nowhere_new(root, blocked_at + _FARTHER)):
                 continue
@@ -101,7 +109,7 @@ class NewPlan:
         """
         task, root_planner = self.task, self.task.root_planner
         before, away, farthest = root_planner.memory, 0.0, None
-        for root, length in root_planner.ways_out(*task.asked):
+        for root, length in root_planner.ways_out(*task.asked, Patience(enough=self._attempts.enough)):
             self._attempts.enter_root(root.checks)
             if self._attempts.spent:
                 root_planner.memory = before
