@@ -90,7 +90,7 @@ def test_a_path_that_is_made_longer_goes_on_as_it_was() -> None:
     before = planner.plan(start, command, 3, INTERVAL)
     state, left = RootState(*before.path.states[1].tolist()), RootPath(INTERVAL, INTERVAL, before.path.states[1:])
     anew = planner.plan(state, command, 16, INTERVAL, INTERVAL)
-    longer = planner.prolonged(left, state, command, 16, INTERVAL, INTERVAL)
+    longer = planner.prolonged(left, state, command, 16, INTERVAL)
     assert longer.path.horizon == 16
     assert longer.path.start_time == INTERVAL
     assert np.array_equal(longer.path.states[:3], left.states)

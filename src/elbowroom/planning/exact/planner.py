@@ -26,14 +26,12 @@ from elbowroom.planning.exact.settings import ExactSettings
 from elbowroom.planning.motion import Motion, MotionQuery
 from elbowroom.planning.result import LocalPlan
 from elbowroom.planning.root.path import RootPath
-from elbowroom.planning.root.plan import RootPlanKind
+from elbowroom.planning.root.plan import RootPlan, RootPlanKind
 from elbowroom.planning.root.planner import RootPlanner
 from elbowroom.planning.stillness import SAME_TIME, is_still
 from elbowroom.world.scene import Scene
 
 Floats = NDArray[np.float64]
-
-_WALKED_ON = RootPlanKind.STRAIGHT, RootPlanKind.DETOUR  # paths at full speed, which can be made longer
 
 
 class ExactPlanner:
@@ -130,20 +128,22 @@ class ExactPlanner:
     def _gone_on(self, left: FullPlan, root_planner: RootPlanner, query: MotionQuery) -> FullPlan | None:
         """What is left of a walk that goes on as planned, prolonged if it gets short; None if it has no new end.
 
-        One that evades something is kept for a while, and then planned anew. So is one that is slower for the upper
-        body's sake, along a way; where a hand steers, and where the legs alone make it slower, it is planned anew at
-        once.
+        One that evades something is kept for a while, and then planned anew. So is one that is slower along a way, if
+        it has no new end; where a hand steers it is planned anew at once.
         """
         horizon, known = self._horizon(root_planner, query), left.root.path.horizon
-        if not _is_commanded(left, root_planner):
-            slower = bool(query.command.way) and left.root.kind is not RootPlanKind.SHORTENED
-            kept = (slower or left.root.kind is RootPlanKind.EVASION) and known >= horizon - self._spare(query)
-            return left if kept else None
-        if known >= horizon:
+        commanded, slower = _is_commanded(left, root_planner), bool(query.command.way) and left.root.pace > 0.0
+        if known >= horizon and (commanded or slower):
             return left
-        whole = self._with_new_end(left, root_planner, query)
-        self.memory.ongoing = None if whole is None else OngoingPlan(query, whole)
-        return whole
+        whole = self._with_new_end(left, root_planner, query) if commanded or slower else None
+        if whole is not None:
+            self.memory.ongoing = OngoingPlan(query, whole)
+            return whole
+        if commanded:
+            self.memory.ongoing = None
+            return None
+        kept = (slower or left.root.kind is RootPlanKind.EVASION) and known >= horizon - self._spare(query)
+        return left if kept else None
 
     def _is_worth_keeping(self, left: FullPlan, query: MotionQuery) -> bool:
         """Whether what is left of a walk leads on, and as far as a plan in a hurry would."""
@@ -151,16 +151,17 @@ class ExactPlanner:
 
     def _with_new_end(self, left: FullPlan, root_planner: RootPlanner, query: MotionQuery) -> FullPlan | None:
         """What is left of a walk that has become too short, and beyond that a new end; None if there is none."""
-        if left.root.kind not in _WALKED_ON:
-            return None
         near = self._horizon(root_planner, query)
-        far = near + self._spare(query)
-        root = root_planner.prolonged(left.root.path, query.root, query.command, far, query.interval, query.time)
-        if root.lost >= root_planner.settings.untroubled or root.kind is not left.root.kind:
-            return None
-        roots = root, root.along(root.path.until(near))
-        plans = (prolonged(self._body, left, one, query, Effort.QUICK) for one in roots)
-        return next((plan for plan in plans if plan is not None), None)
+        far, before = near + self._spare(query), root_planner.memory
+        for pace in dict.fromkeys((1.0, left.root.pace) if left.root.pace > 0.0 else ()):
+            root_planner.memory = before
+            root = root_planner.prolonged(left.root.path, query.root, query.command, far, query.interval, pace)
+            if _goes_on(left.root, root, pace, root_planner.settings.untroubled):
+                roots = root, root.along(root.path.until(near))
+                plans = (prolonged(self._body, left, one, query, Effort.QUICK) for one in roots)
+                if (plan := next((plan for plan in plans if plan is not None), None)) is not None:
+                    return plan
+        return None
 
     def _spare(self, query: MotionQuery) -> int:
         return round(self.settings.spare / query.interval)
@@ -169,3 +170,10 @@ class ExactPlanner:
 def _is_commanded(whole: FullPlan, root_planner: RootPlanner) -> bool:
     """Whether a motion follows the path as commanded, and the upper body has a way along it."""
     return whole.margins is not None and whole.root.lost < root_planner.settings.untroubled
+
+
+def _goes_on(left: RootPlan, root: RootPlan, pace: float, untroubled: float) -> bool:
+    """Whether what is `left` of a path, made longer at a share of the speed, is walked on as it was to its new end."""
+    slower = (1.0 - pace) * root.path.horizon * root.path.interval
+    alike = root.kind is RootPlanKind.STRAIGHT or root.kind is left.kind is RootPlanKind.DETOUR
+    return alike and root.pace >= pace and root.lost - slower < untroubled

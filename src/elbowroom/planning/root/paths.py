@@ -150,10 +150,11 @@ class RootPaths:
             free, states, stands, lost, x, z = straight_walk(self._walker, start, line, speed, pace, stretch, slow)
             if free:
                 kind = RootPlanKind.STOPPED if stands else RootPlanKind.STRAIGHT
-                return _plan(asked, Answer(states, kind, (x, z), ends=False), 0, began, lost)
+                answer = Answer(states, kind, (x, z), ends=False, share=0.0 if stands else pace)
+                return _plan(asked, answer, 0, began, lost)
         query = self._query(asked)
         before = query.checks
-        answer = query.travelled(line, pace * speed, sight, slow, tight=tight)
+        answer = query.travelled(line, pace * speed, sight, slow, tight=tight).at(pace)
         return _plan(asked, answer, query.checks - before, began, self._lost(asked, line, speed, answer))
 
     def along(self, asked: Asked, leg: int, pace: float) -> RootPlan:
@@ -165,7 +166,7 @@ class RootPaths:
         slow = self._with_steep(slow, asked, places_along(way, ahead.legs), speed)
         query = self._query(asked)
         before = query.checks
-        answer = query.travelled(line, pace * speed, self._sight(asked, speed), slow, ahead)
+        answer = query.travelled(line, pace * speed, self._sight(asked, speed), slow, ahead).at(pace)
         lost = self._lost(asked, line, speed, answer)
         if answer.likewise is not None:
             lost = max(_walked(answer.likewise) - _walked(answer.states), 0.0) / max(speed, SLOW)
@@ -300,7 +301,8 @@ class RootPaths:
 
 def _plan(asked: Asked, answer: Answer, checks: int, began: int, lost: float = 0.0) -> RootPlan:
     path = RootPath(asked.start_time, asked.interval, answer.states)
-    return RootPlan(path, answer.kind, answer.goal, checks, perf_counter_ns() - began, lost, answer.beside, answer.free)
+    spent, beside, free, pace = perf_counter_ns() - began, answer.beside, answer.free, answer.share
+    return RootPlan(path, answer.kind, answer.goal, checks, spent, lost, beside, free, pace)
 
 
 def _walked(states: Floats) -> float:

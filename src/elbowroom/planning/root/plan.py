@@ -69,6 +69,7 @@ class RootPlan(NamedTuple):
     lost: float = 0.0  # seconds that it costs against a walk as commanded, evasions and turns included
     beside: bool = False  # whether it leads round a gap that one could go through
     free: bool = True  # whether nothing that moves comes into it
+    pace: float = 0.0  # share of the wanted speed at which it is walked on to its end; 0 where it is not
 
     def along(self, path: RootPath) -> "RootPlan":
         """The same plan on another path."""

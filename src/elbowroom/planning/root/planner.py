@@ -128,16 +128,16 @@ class RootPlanner:
     ) -> RootPlan:
         """To a stand, whatever is commanded; arguments as for `plan`. What it remembers stays as it is."""
         plan = self._paths.stopped(Asked(start, command, horizon, interval, start_time))
-        return plan._replace(kind=RootPlanKind.SHORTENED)
+        return plan._replace(kind=RootPlanKind.SHORTENED, pace=0.0)
 
     def prolonged(
-        self, left: RootPath, start: RootState, command: Command, horizon: int, interval: float, start_time: float = 0.0
+        self, left: RootPath, start: RootState, command: Command, horizon: int, interval: float, pace: float = 1.0
     ) -> RootPlan:
         """What is `left` of a path from the start on, made longer to `horizon` key intervals, more than it has.
 
         So who goes on does as was planned. The other arguments are as for `plan`, and so is what the new end is.
         """
-        return self._maker.prolonged(Asked(start, command, horizon, interval, start_time), left)
+        return self._maker.prolonged(Asked(start, command, horizon, interval, left.start_time), left, pace)
 
     def candidates(
         self,
@@ -205,11 +205,12 @@ class RootPlanner:
     ) -> Iterator[Offer]:
         """What is made, or, for who stands among what stands, what was offered before; each is taken in turn."""
         self._offered.clear()
-        rests = not len(self.moving) and is_still(asked.start.as_array()[3:6])
+        alone = not len(self.moving)
+        rests = alone and is_still(asked.start.as_array()[3:6])
         for offer in self._from_here.again(kind, asked, make) if rests else make():
             if isinstance(offer, Pause):
-                if patience.enough(offer.checks) and rests:
-                    return
+                if patience.enough(offer.checks) and alone:
+                    return  # whoever comes to rest will have what is left
                 continue
             self._offered.append(offer)
             self.memory = offer.memory
@@ -241,15 +242,16 @@ class _OfferMaker:
         self._remember(asked.command, line, leg, plan)
         return plan
 
-    def prolonged(self, asked: Asked, left: RootPath) -> RootPlan:
-        """What is left of a path, and from its end on the path as it is asked for."""
+    def prolonged(self, asked: Asked, left: RootPath, pace: float) -> RootPlan:
+        """What is left of a path, and from its end on the path as it is asked for, at a share of the speed."""
         memory, command = self.memory, asked.command
         end, last = RootState(*left.states[-1].tolist()), left.horizon
         later = Asked(end, command, asked.horizon - last, asked.interval, left.time_of(last))
-        line, rest = self._as_commanded(later, memory.leg_of(command.way, end), 1.0)
+        line, rest = self._as_commanded(later, memory.leg_of(command.way, end), pace)
         leg = memory.leg_of(command.way, asked.start)
         states = np.concatenate([left.states, rest.path.states[1:]])
-        plan = rest.along(RootPath(asked.start_time, asked.interval, states))
+        lost = rest.lost + (1.0 - pace) * last * asked.interval
+        plan = rest.along(RootPath(asked.start_time, asked.interval, states))._replace(lost=lost)
         self._remember(command, line_of(command.way, leg, command) if command.way else line, leg, plan)
         return plan
 

@@ -53,6 +53,11 @@ class Answer(NamedTuple):
     beside: bool = False  # whether it leads round a gap, as people like to: they lose nothing by that
     likewise: Floats | None = None  # the same were nothing in the way, of who walks along a way
     free: bool = True  # whether nothing that moves comes into it
+    share: float = 0.0  # of the speed that was asked for, at which it is walked on to its end; 0 where it is not
+
+    def at(self, pace: float) -> "Answer":
+        """The same of who asked for this share of the wanted speed."""
+        return self._replace(share=pace * self.share)
 
 
 class _Best(NamedTuple):
@@ -172,7 +177,7 @@ class RootQuery:
     def stopped(self) -> Answer:
         """Stand, or step out of the way of what comes."""
         found = self._given_way if self.around else _Best(self._stopped())
-        return Answer(found.states, RootPlanKind.STRAIGHT, _place(found.states[0]), False, free=found.free)
+        return Answer(found.states, RootPlanKind.STRAIGHT, _place(found.states[0]), False, free=found.free, share=1.0)
 
     def _stopped(self) -> Floats:
         """Brake, harder if need be; at last stand still at once."""
@@ -201,7 +206,11 @@ class RootQuery:
         if not on_the_spot:
             states = self._crept(states, candidate)
         kind = self._kind(states, whole=number == 0, detour=False)
-        return Answer(states, kind, _place(states[-1]), False, free=free)
+        return Answer(states, kind, _place(states[-1]), False, free=free, share=self._share_of(number, kind))
+
+    def _share_of(self, number: int, kind: RootPlanKind) -> float:
+        """The share of the speed at which a path is walked to its end that is one of those tried, as a whole."""
+        return 0.0 if number < 0 or kind is RootPlanKind.STOPPED else self.settings.slower[number]
 
     def travelled(
         self,
@@ -241,11 +250,15 @@ class RootQuery:
             return states
 
         states, number, free = self._best(candidate(share) for share in self.settings.slower)
-        states = self._crept(states, creeping)
-        kind = self._kind(states, whole=number == 0, detour=route.detour)
+        crept = self._crept(states, creeping)
+        kind = self._kind(crept, whole=number == 0, detour=route.detour)
+        share = self._share_of(number, kind) if crept is states else 0.0
+        states = crept
         brisk = candidate(1.0, NONE_SLOW) if number == 0 and len(slow) else None
         beside = route.beside and number == 0
-        answer = Answer(states, kind, _place(route.corners[-1]), route.ends, brisk=brisk, beside=beside, free=free)
+        answer = Answer(
+            states, kind, _place(route.corners[-1]), route.ends, brisk=brisk, beside=beside, free=free, share=share
+        )
         return answer._replace(likewise=candidate(1.0)) if corners is not route.corners else answer
 
     def _route_along(self, line: TravelLine, sight: float, way: Floats | None, tight: Floats) -> Route:
