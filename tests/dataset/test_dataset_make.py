@@ -135,6 +135,7 @@ def test_walks_that_touch_are_left_out_and_listed(monkeypatch: pytest.MonkeyPatc
     monkeypatch.setattr(WalkTask, "run", lambda task: "touches in 3 poses" if task.number == 1 else walk(task))
     manifest = make_dataset(replace(SPEC, walks=2), tmp_path, Here())
     assert manifest.shards[0].rejected == {"1": "touches in 3 poses"}
+    assert [manifest.why_left_out(walk) for walk in (0, 1)] == [None, "touches in 3 poses"]
     assert table(tmp_path).column("walk").to_pylist() == [0]
     assert "- 1: touches something" in (tmp_path / "README.md").read_text()
 

@@ -108,6 +108,8 @@ def check(
 
     manifest = Manifest.of(folder)
     if show is not None:
+        if (why := manifest.why_left_out(show)) is not None:
+            typer.echo(f"elbowroom: walk {show} was left out of the files: {why}", err=True)
         return _show(manifest.spec, show)
     if sample:
         from elbowroom.dataset.drawn_from import check_drawn_from

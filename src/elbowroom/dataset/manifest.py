@@ -66,6 +66,10 @@ class Manifest:
             raise InputError(f"{folder}: holds no dataset (no {FILE})")
         return manifest
 
+    def why_left_out(self, walk: int) -> str | None:
+        """Why a walk is in none of the files; None of one that is in one, or that nobody has made yet."""
+        return next((row.rejected[str(walk)] for row in self.shards if str(walk) in row.rejected), None)
+
     def save(self, folder: Path) -> None:
         """Write it, whole or not at all."""
         path, part = folder / FILE, folder / f".{FILE}.part"
