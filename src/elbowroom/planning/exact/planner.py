@@ -150,18 +150,29 @@ class ExactPlanner:
         return left.leads_on and left.root.path.horizon >= round(self.settings.hurried_ahead / query.interval)
 
     def _with_new_end(self, left: FullPlan, root_planner: RootPlanner, query: MotionQuery) -> FullPlan | None:
-        """What is left of a walk that has become too short, and beyond that a new end; None if there is none."""
-        near = self._horizon(root_planner, query)
-        far, before = near + self._spare(query), root_planner.memory
-        for pace in dict.fromkeys((1.0, left.root.pace) if left.root.pace > 0.0 else ()):
+        """What is left of a walk that has become too short, and beyond that a new end, at full speed or else as slow as
+        it is; None if there is none, or it ends.
+        """
+        before = root_planner.memory
+        for pace in dict.fromkeys((1.0, left.root.pace)) if left.root.pace > 0.0 else ():
             root_planner.memory = before
-            root = root_planner.prolonged(left.root.path, query.root, query.command, far, query.interval, pace)
-            if _goes_on(left.root, root, pace, root_planner.settings.untroubled):
-                roots = root, root.along(root.path.until(near))
-                plans = (prolonged(self._body, left, one, query, Effort.QUICK) for one in roots)
-                if (plan := next((plan for plan in plans if plan is not None), None)) is not None:
-                    return plan
+            plan = self._with_new_end_at(pace, left, root_planner, query)
+            if plan is not None:
+                return plan
         return None
+
+    def _with_new_end_at(
+        self, pace: float, left: FullPlan, root_planner: RootPlanner, query: MotionQuery
+    ) -> FullPlan | None:
+        """The same at a share of the speed."""
+        near = self._horizon(root_planner, query)
+        far = near + self._spare(query)
+        root = root_planner.prolonged(left.root.path, query.root, query.command, far, query.interval, pace)
+        if not _goes_on(left.root, root, pace, root_planner.settings.untroubled):
+            return None
+        roots = root, root.along(root.path.until(near))
+        plans = (prolonged(self._body, left, one, query, Effort.QUICK) for one in roots)
+        return next((plan for plan in plans if plan is not None), None)
 
     def _spare(self, query: MotionQuery) -> int:
         return round(self.settings.spare / query.interval)
