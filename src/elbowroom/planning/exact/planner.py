@@ -153,10 +153,10 @@ class ExactPlanner:
         """What is left of a walk that has become too short, and beyond that a new end, at full speed or else as slow as
         it is; None if there is none, or it ends.
         """
-        before = root_planner.memory
-        for pace in dict.fromkeys((1.0, left.root.pace)) if left.root.pace > 0.0 else ():
+        before, pace = root_planner.memory, left.root.pace
+        for share in (1.0, pace) if 0.0 < pace < 1.0 else (pace,) if pace > 0.0 else ():
             root_planner.memory = before
-            plan = self._with_new_end_at(pace, left, root_planner, query)
+            plan = self._with_new_end_at(share, left, root_planner, query)
             if plan is not None:
                 return plan
         return None

@@ -150,8 +150,8 @@ class RootPaths:
             free, states, stands, lost, x, z = straight_walk(self._walker, start, line, speed, pace, stretch, slow)
             if free:
                 kind = RootPlanKind.STOPPED if stands else RootPlanKind.STRAIGHT
-                answer = Answer(states, kind, (x, z), ends=False, share=0.0 if stands else pace)
-                return _plan(asked, answer, 0, began, lost)
+                answer = Answer(states, kind, (x, z), ends=False, share=0.0 if stands else 1.0)
+                return _plan(asked, answer.at(pace), 0, began, lost)
         query = self._query(asked)
         before = query.checks
         answer = query.travelled(line, pace * speed, sight, slow, tight=tight).at(pace)

@@ -75,6 +75,10 @@ class RootPlan(NamedTuple):
         """The same plan on another path."""
         return self._replace(path=path)
 
+    def ended(self, path: RootPath, kind: RootPlanKind = RootPlanKind.SHORTENED) -> "RootPlan":
+        """The same plan on a path that is not walked on as wanted to its end."""
+        return self._replace(path=path, kind=kind, pace=0.0)
+
     def going_on(self, path: RootPath) -> "RootPlan":
         """The same plan on a path for which nothing was searched any more."""
         return self._replace(path=path, checks=0, nanoseconds=0)

@@ -128,14 +128,15 @@ class RootPlanner:
     ) -> RootPlan:
         """To a stand, whatever is commanded; arguments as for `plan`. What it remembers stays as it is."""
         plan = self._paths.stopped(Asked(start, command, horizon, interval, start_time))
-        return plan._replace(kind=RootPlanKind.SHORTENED, pace=0.0)
+        return plan.ended(plan.path)
 
     def prolonged(
         self, left: RootPath, start: RootState, command: Command, horizon: int, interval: float, pace: float = 1.0
     ) -> RootPlan:
         """What is `left` of a path from the start on, made longer to `horizon` key intervals, more than it has.
 
-        So who goes on does as was planned. The other arguments are as for `plan`, and so is what the new end is.
+        So who goes on does as was planned. The other arguments are as for `plan`, and so is what the new end is, which
+        is walked at the share `pace` of the wanted speed.
         """
         return self._maker.prolonged(Asked(start, command, horizon, interval, left.start_time), left, pace)
 

@@ -164,7 +164,7 @@ def _joined(asked: Asked, place: _Place, onward: RootPlan) -> tuple[RootPlan, Ro
     """A plan over the steps to a place and then on, with the whole path and the length of the steps."""
     path = RootPath(asked.start_time, asked.interval, np.vstack([place.states, onward.path.states[1:]]))
     lost = asked.horizon * asked.interval
-    plan = onward._replace(path=path.until(asked.horizon), kind=RootPlanKind.EVASION, lost=lost, pace=0.0)
+    plan = onward.ended(path.until(asked.horizon), RootPlanKind.EVASION)._replace(lost=lost)
     return plan, path, len(place.states) - 1
 
 

@@ -63,7 +63,7 @@ class Attempts:
     ) -> None:
         """Begin a plan; `stands` says that nothing moves, the avatar neither, `moving` that something else does.
 
-        `uneven` says that the ground is no plane.
+        `uneven` says that the ground is no plane: who walks there is always in a hurry.
         """
         self._work, self._postponed = 0.0, False
         self._place = _PLACE_UNEVEN if uneven else _PLACE

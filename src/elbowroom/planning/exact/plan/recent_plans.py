@@ -8,7 +8,7 @@ from elbowroom.planning.exact.memory.previous_plan import PreviousPlan
 from elbowroom.planning.exact.plan.full_plan import FullPlan, later, previous_of
 from elbowroom.planning.motion import MotionQuery
 from elbowroom.planning.root.path import RootPath
-from elbowroom.planning.root.plan import RootPlan, RootPlanKind
+from elbowroom.planning.root.plan import RootPlan
 from elbowroom.planning.stillness import SAME, UNMOVED
 
 _PAST = 3  # plans before the last one
@@ -55,7 +55,7 @@ class RecentPlans:
         if not 0 <= at < len(path.states) - 1 or not np.abs(path.states[at] - query.root.as_array()).max() <= SAME:
             return None
         left = later(last, at)
-        return left._replace(root=left.root._replace(kind=RootPlanKind.SHORTENED, pace=0.0))
+        return left._replace(root=left.root.ended(left.root.path))
 
     def ahead(self, query: MotionQuery) -> RootPlan | None:
         """The way that is left of the last plan, if it leads through where this one starts, at a key time or not."""
@@ -70,7 +70,7 @@ class RecentPlans:
         states = path.sample(query.time + query.interval * np.arange(horizon + 1.0))
         states[0] = query.root.as_array()
         left = RootPath(query.time, query.interval, states)
-        return last.root.going_on(left)._replace(kind=RootPlanKind.SHORTENED, pace=0.0)
+        return last.root.going_on(left).ended(left)
 
 
 def after(earlier: FullPlan, whole: FullPlan) -> FullPlan:

@@ -43,7 +43,7 @@ class SafeEnd:
             if stopping.reached == path.horizon:
                 stands = walked(path, path.horizon) < STANDING
                 kind = RootPlanKind.STOPPED if stands else RootPlanKind.SHORTENED
-                return FullPlan(root._replace(path=path, kind=kind, pace=0.0), stopping.plan, stopping.margins)
+                return FullPlan(root.ended(path, kind), stopping.plan, stopping.margins)
         return None
 
     def _braked_path(self, path: RootPath, moving: int) -> RootPath:
