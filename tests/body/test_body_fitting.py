@@ -3,6 +3,7 @@ import numpy as np
 from elbowroom.body.fitting.body_parts import BodyPoints, part_of_points
 from elbowroom.body.fitting.coverage import coverage
 from elbowroom.body.fitting.fit import fit_capsules
+from elbowroom.body.fitting.flexing import poses_of
 from elbowroom.body.fitting.proportions import proportional_capsules, proportional_skeleton
 from elbowroom.body.fitting.surface import Surface
 
@@ -22,9 +23,14 @@ def _surface_of_capsules(rng: np.random.Generator, each: int) -> BodyPoints:
     return BodyPoints(np.concatenate(points), np.concatenate(joints))
 
 
+def _rigid(points: BodyPoints) -> Surface:
+    """A surface of points that each move with their one joint."""
+    return Surface(points, poses_of(SKELETON).carried(points.joints, points.positions), points)
+
+
 def test_capsules_are_found_again_from_their_surface() -> None:
     points = _surface_of_capsules(np.random.default_rng(0), 300)
-    capsules, bare, _ = fit_capsules(SKELETON, Surface(points, points))
+    capsules, bare, _ = fit_capsules(SKELETON, _rigid(points))
     average = proportional_capsules(SKELETON)
     assert bare == ()
     assert capsules.names == average.names
@@ -39,7 +45,7 @@ def test_parts_without_points_keep_average_proportions() -> None:
     head = SKELETON.index("head")
     ball = 0.1 * np.random.default_rng(1).normal(size=(200, 3)) + SKELETON.positions[head]
     points = BodyPoints(ball, np.full(200, head))
-    capsules, bare, _ = fit_capsules(SKELETON, Surface(points, points))
+    capsules, bare, _ = fit_capsules(SKELETON, _rigid(points))
     average = proportional_capsules(SKELETON)
     assert set(bare) == set(average.names) - {"head", "shoulders"}
     others = [i for i, name in enumerate(average.names) if name != "head"]
@@ -60,6 +66,6 @@ def test_points_belong_to_the_part_of_their_bone() -> None:
 
 def test_the_fit_repeats_exactly() -> None:
     points = _surface_of_capsules(np.random.default_rng(2), 60)
-    once, again = (fit_capsules(SKELETON, Surface(points, points))[0] for _ in range(2))
+    once, again = (fit_capsules(SKELETON, _rigid(points))[0] for _ in range(2))
     assert np.array_equal(once.radii, again.radii)
     assert np.array_equal(once.ends, again.ends)

@@ -8,8 +8,10 @@ import pytest
 from hatchling.builders.wheel import WheelBuilder
 
 from elbowroom.body.capsules import Capsules
+from elbowroom.body.dof import DofGroup, group_of_bone
 from elbowroom.body.fitting.coverage import coverage
 from elbowroom.body.fitting.fit import Fit, fit_capsules
+from elbowroom.body.fitting.flexing import PosedPoints, poses_of
 from elbowroom.body.fitting.slim_capsule import Slim
 from elbowroom.body.fitting.stock_fit import fit_document, fit_of, stock_fit
 from elbowroom.body.humanoid import Humanoid
@@ -80,6 +82,29 @@ def test_no_vertex_of_the_head_stands_out(fitted_anew: bool) -> None:
     rest = skeleton.positions[capsules.joints]
     whole = zip(capsules.starts + rest, capsules.ends + rest, capsules.radii.tolist(), strict=True)
     assert np.min([Slim(start, end, radius).outside(points) for start, end, radius in whole], axis=0).max() < 1e-6
+
+
+@pytest.mark.parametrize("fitted_anew", [False, True])
+def test_no_vertex_of_the_legs_stands_out_in_a_stride(fitted_anew: bool) -> None:
+    """In narrow places legs keep nothing: neither a kneecap nor the edge of a sole may be out of the capsules.
+
+    Hips have no such edges, and hold as much as the trunk does.
+    """
+    humanoid, surface = load_with_surface(stock_avatar_path())
+    skeleton, poses = humanoid.skeleton, poses_of(humanoid.skeleton)
+    capsules = fit_capsules(skeleton, surface).capsules if fitted_anew else humanoid.capsules
+    legs = np.array([group_of_bone(bone) is DofGroup.ROOT for bone in skeleton.names])
+    mine = legs[surface.vertices.joints]
+    assert np.count_nonzero(mine) > 3000
+    places = surface.posed[:, mine]
+    points = PosedPoints(places.reshape(-1, 3), np.repeat(np.arange(len(places)), places.shape[1]))
+    rest = skeleton.positions[capsules.joints]
+    rows = zip(capsules.joints, capsules.starts + rest, capsules.ends + rest, capsules.radii.tolist(), strict=True)
+    gaps = [poses.outside(Slim(start, end, radius), int(joint), points) for joint, start, end, radius in rows]
+    outside = np.min(gaps, axis=0).reshape(places.shape[:2])
+    hips = surface.vertices.joints[mine] == skeleton.index("hips")
+    assert outside[:, ~hips].max() < 0.0011
+    assert outside[:, hips].max() < 0.0051
 
 
 def test_nothing_of_a_fit_is_lost_on_its_way_through_the_file() -> None:

@@ -114,7 +114,7 @@ def test_nobody_is_stuck_before_it_is_decided_whether_to_climb(late: int, aside:
 
 
 def test_what_is_higher_than_a_knee_is_stood_before() -> None:
-    frames = walked(across(0.5, 0.1), 5.0)
+    frames = walked(across(0.5, 0.1), 6.0)
     assert frames[-1].stuck
     assert np.abs(heights(frames)).max() < 1e-6
 

@@ -21,16 +21,12 @@ def pose(arms: float, along: float = 0.0, speed: float = 0.0) -> Playback:
     return Playback(root, np.full(LOCAL, arms), np.zeros(LOCAL))
 
 
-def showing(shown: Playback, *, plain: bool = True, straight: bool = True) -> Showing:
-    """It shows a pose, and anything else is free; so is the `straight` way between any two.
-
-    The upper body tells how far thighs and shins are from what stands, metres.
-    """
+def showing(shown: Playback, *, straight: bool = True) -> Showing:
+    """It shows a pose, and anything else is free; so is the `straight` way between any two."""
     check: Any = SimpleNamespace(
-        footing=SimpleNamespace(plain=plain),
+        footing=SimpleNamespace(plain=True),
         restless=False,
         accompanied=False,
-        room_about_knees=lambda _, upper: float(upper[0]),
         standing=lambda root: root,
         clearance=lambda *_: 1.0,
         shown_clearance=lambda *_: 1.0,
@@ -39,26 +35,10 @@ def showing(shown: Playback, *, plain: bool = True, straight: bool = True) -> Sh
         between=lambda _: None,
     )
     own_body = SimpleNamespace(free_between=lambda *_: True)
-    around: Any = SimpleNamespace(
-        check=check, own_body=own_body, feet=SimpleNamespace(standing=lambda root: root), spare=0.0
-    )
+    around: Any = SimpleNamespace(check=check, own_body=own_body, feet=SimpleNamespace(standing=lambda root: root))
     made = Showing(around, np.zeros(SHOWN), assist=True)
     made._show(shown, 1.0)
     return made
-
-
-@pytest.mark.parametrize(
-    ("had", "has", "free"), [(0.02, 0.012, True), (0.02, 0.008, False), (0.006, 0.008, True), (0.006, 0.005, False)]
-)
-def test_thighs_and_shins_keep_a_centimetre_or_what_they_had(had: float, has: float, free: bool) -> None:
-    assert showing(pose(had), plain=False)._is_free(pose(has), 1.0) is free
-
-
-def test_they_need_not_on_the_plane_and_while_legs_come_to_a_stand() -> None:
-    assert showing(pose(0.02))._is_free(pose(0.008), 1.0)
-    held = showing(pose(0.02), plain=False)
-    held.holding.active = True
-    assert held._is_free(pose(0.008), 1.0)
 
 
 def gone_back(straight: bool) -> list[Playback]:

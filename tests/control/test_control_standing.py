@@ -25,7 +25,7 @@ def test_a_whiff_of_velocity_hides_no_stop(humanoid: Humanoid) -> None:
     wall = Obstacles.boxes(np.array([[0.0, 1.0, 2.0]]), np.array([[0.0, 0, 0, 1]]), np.array([[4.0, 1.0, 0.1]]))
     scene = replace(Scene.load("empty"), obstacles=wall)
     controller = Controller(humanoid, scene)
-    for _ in range(300):
+    for _ in range(360):
         frame = controller.step(FORWARD, DT)
     assert frame.stuck
     for velocity in (1e-19, -1e-44):

@@ -18,7 +18,7 @@ from sampled import sampled
 AVATAR = Humanoid.default()
 DT = 1 / 60
 # Before the sideboard of scene C, knees 1.5 cm from it: a stride in any direction brings one into it.
-HARD_BY = RootState(-0.6107459119754125, 1.2700209971435816, 6.71346379465214, 0.0, 0.0, 0.0, 0.0)
+HARD_BY = RootState(-0.6107459119754125, 1.2540209971435816, 6.71346379465214, 0.0, 0.0, 0.0, 0.0)
 AWAY = [Command(forward=-1.0), Command(strafe=1.0), Command(strafe=-1.0), Command(forward=-0.7, strafe=0.7)]
 DIRECTIONS = [Command(forward=1.0, direction=k * math.pi / 4) for k in range(2, 7)]
 
@@ -48,9 +48,9 @@ def test_who_has_no_room_for_a_stride_steps_back_and_goes_on(scene: str, x: floa
 @pytest.mark.parametrize("direction", [-0.1, -0.06])
 def test_who_stands_before_a_doorpost_in_mid_stride_gets_through_beside_it(direction: float) -> None:
     """Reached by the mouse: of the steps from here that were tried, the only free ones led 3 cm aside."""
-    start = RootState(0.19383370394519506, 1.8901465119164946, -0.09219500975227793, phase=2.4809562816133006)
+    start = RootState(0.19383370394519506, 1.878, -0.09219500975227793, phase=2.4809562816133006)
     controller = Controller(AVATAR, Scene.load("doorway"), start=start)
-    assert moved(controller, Command(forward=1.0, direction=direction), 12.0) > 1.0
+    assert moved(controller, Command(forward=1.0, direction=direction), 14.0) > 1.0
     assert controller.root.z > 3.0
 
 

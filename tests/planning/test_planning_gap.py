@@ -56,7 +56,7 @@ def found(scene: Scene, line: TravelLine) -> Gap | None:
 @given(
     yaw=angles,
     place=st.tuples(st.floats(-3.0, 3.0), st.floats(-3.0, 3.0)),
-    width=st.floats(0.36, 0.5),
+    width=st.floats(0.35, 0.5),
     thick=st.floats(0.05, 0.3),
     slant=st.floats(-0.7, 0.7),
     aside=st.floats(-0.25, 0.25),
@@ -95,7 +95,7 @@ def test_a_door_is_passed_at_a_slant(slant: float, aside: float) -> None:
 
 @pytest.mark.parametrize("aside", [-0.1, 0.0])
 def test_a_door_that_leaves_no_room_for_long_steps_is_passed_with_short_ones(aside: float) -> None:
-    scene = door(0.36, 0.1, 0.0, 0.0, 2.2)
+    scene = door(0.35, 0.1, 0.0, 0.0, 2.2)
     controller = Controller(AVATAR, scene, start=RootState(aside, 0.0))
     for _ in range(600):
         assert not controller.step(Command(forward=1.0), DT).touching

@@ -25,10 +25,13 @@ def _fit(path: Path) -> str:
 def _with_anew(path: Path, ends: tuple[str, ...]) -> str:
     """The stored fit of an avatar file as JSON, with the capsules whose names end so made anew."""
     stored, made = json.loads(stock_fit_path().read_text("utf-8")), json.loads(_fit(path))
-    fresh = {row["name"]: row for row in made["capsules"]}
-    if unknown := [end for end in ends if not any(name.endswith(end) for name in fresh)]:
-        raise SystemExit(f"--anew: no capsule's name ends in {unknown[0]}; there are {', '.join(fresh)}")
-    rows = [fresh[row["name"]] if row["name"].endswith(ends) else row for row in stored["capsules"]]
+    parts = [row["name"].split()[0] for row in made["capsules"]]
+    if unknown := [end for end in ends if not any(part.endswith(end) for part in parts)]:
+        raise SystemExit(f"--anew: no capsule's name ends in {unknown[0]}; there are {', '.join(dict.fromkeys(parts))}")
+    rows = []
+    for part in dict.fromkeys(parts):
+        of = made if part.endswith(ends) else stored
+        rows += [row for row in of["capsules"] if row["name"].split()[0] == part]
     return json.dumps({**stored, "capsules": rows}, indent=1) + "\n"
 
 

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.capsules import Capsules
+from elbowroom.body.dof import DofGroup
 from elbowroom.body.fitting.proportions import last_spine
 from elbowroom.body.skeleton import Skeleton
 
@@ -13,6 +14,7 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 SIDES = ("left", "right")
+PELVIS = "pelvis"
 TRUNK = ("abdomen", "torso", "chest")
 _LIMB_PARTS = {
     "UpperLeg": "Thigh",
@@ -60,11 +62,22 @@ def part_of_points(skeleton: Skeleton, capsules: Capsules, points: BodyPoints) -
     return parts
 
 
+def leans_on(capsules: Capsules, part: int) -> tuple[str, ...]:
+    """The parts that may hold what belongs to a part, since they move alike in the poses a fit knows: those of legs.
+
+    The pelvis leans on the waist too. Other parts lean on none.
+    """
+    if capsules.groups[part] is not DofGroup.ROOT:
+        return ()
+    legs = tuple(capsules.names[leg] for leg in capsules.of(DofGroup.ROOT))
+    return (*legs, TRUNK[0]) if capsules.names[part] == PELVIS else legs
+
+
 def _part_name(bone: str) -> str:
     side = next((side for side in SIDES if bone.startswith(side)), "")
     rest = bone.removeprefix(side)
     if bone == "hips":
-        return "pelvis"
+        return PELVIS
     if rest.startswith(_FINGERS):
         return f"{side}Hand"
     return _HEAD.get(bone, side + _LIMB_PARTS.get(rest, ""))

@@ -6,8 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.capsules import Capsules
-from elbowroom.body.fitting.body_parts import BodyPoints, part_of_points
+from elbowroom.body.fitting.body_parts import BodyPoints, leans_on, part_of_points
 from elbowroom.body.fitting.fit import MARGIN, FitSettings
+from elbowroom.body.fitting.flexing import PosedPoints, Poses, poses_of
 from elbowroom.body.fitting.proportions import proportional_capsules
 from elbowroom.body.fitting.slim_capsule import Slim
 from elbowroom.body.skeleton import Skeleton
@@ -20,7 +21,10 @@ _FEWEST = FitSettings().fewest  # samples: of less surface nothing is said
 
 @dataclass(frozen=True)
 class Coverage:
-    """How much of the surface is inside the capsules of the joint that carries it, or at most `MARGIN` outside."""
+    """How much of the surface is inside the capsules of the joint that carries it, or at most `MARGIN` outside.
+
+    What belongs to the legs may be inside of any that it `leans_on`, in the poses that samples are in.
+    """
 
     share: float  # of the whole area
     parts: dict[str, float]  # the same for each part of the body that has a surface
@@ -40,7 +44,13 @@ def coverage(skeleton: Skeleton, capsules: Capsules, samples: BodyPoints) -> Cov
     counted = [part for part in range(len(average.names)) if np.count_nonzero(parts == part) >= _FEWEST]
     if not counted:
         return None
-    outside = [_outside(skeleton, capsules, int(average.joints[p]), samples.positions[parts == p]) for p in counted]
+    poses = poses_of(skeleton)
+    outside = []
+    for part in counted:
+        beside, joint = leans_on(average, part), average.joints[part]
+        own = [i for i, name in enumerate(capsules.names) if name.split()[0] in beside or capsules.joints[i] == joint]
+        points = poses.sampled(samples, np.flatnonzero(parts == part))
+        outside.append(_outside(skeleton, capsules, own, points, poses))
     names = [average.names[part] for part in counted]
     worst = int(np.argmax([gaps.max() for gaps in outside]))
     return Coverage(
@@ -51,11 +61,12 @@ def coverage(skeleton: Skeleton, capsules: Capsules, samples: BodyPoints) -> Cov
     )
 
 
-def _outside(skeleton: Skeleton, capsules: Capsules, joint: int, points: Floats) -> Floats:
-    """How far points (P, 3) are outside all capsules of a joint, metres; negative inside."""
-    rest = skeleton.positions[joint]
-    gaps = np.full(len(points), np.inf)
-    for i in np.flatnonzero(capsules.joints == joint):
+def _outside(skeleton: Skeleton, capsules: Capsules, some: list[int], points: PosedPoints, poses: Poses) -> Floats:
+    """How far points (P,) are outside all of some capsules, metres; negative inside."""
+    gaps = np.full(len(points.places), np.inf)
+    for i in some:
+        joint = int(capsules.joints[i])
+        rest = skeleton.positions[joint]
         slim = Slim(capsules.starts[i] + rest, capsules.ends[i] + rest, float(capsules.radii[i]))
-        gaps = np.minimum(gaps, slim.outside(points))
+        gaps = np.minimum(gaps, poses.outside(slim, joint, points))
     return gaps

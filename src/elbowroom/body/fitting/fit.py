@@ -13,18 +13,19 @@ from numpy.typing import NDArray
 
 from elbowroom.body.capsules import Capsules
 from elbowroom.body.dof import DofGroup
-from elbowroom.body.fitting.body_parts import SIDES, part_of_points
+from elbowroom.body.fitting.body_parts import PELVIS, SIDES, leans_on, part_of_points
+from elbowroom.body.fitting.flexing import PosedPoints, Poses, poses_of
 from elbowroom.body.fitting.proportions import proportional_capsules
 from elbowroom.body.fitting.slim_capsule import Slim, Wanted, slimmest
 from elbowroom.body.fitting.surface import Surface
-from elbowroom.body.fitting.tips import Tips, with_tips
+from elbowroom.body.fitting.tips import Limits, Tips, with_tips
 from elbowroom.body.skeleton import Skeleton
 
 Floats = NDArray[np.float64]
 
 MARGIN = 0.01  # metres that the surface may be outside the capsules
 _ARM = ("UpperArm", "Forearm", "Hand")
-_HEAD = "head"
+_HEAD, _THIGH = "head", "Thigh"
 _SHOULDERS = "shoulders"  # from one shoulder joint to the other, as thick as the upper arms that hang there
 _WHOLE = ("leftUpperArm", "rightUpperArm")  # one capsule each: what is rooted in the trunk is told by its place
 
@@ -47,12 +48,19 @@ class FitSettings:
     margin: float = MARGIN
     arm_margin: float = 0.5 * MARGIN  # the same for arms: nothing passes things as closely, and that is all they keep
     tip_margin: float = 0.5 * MARGIN  # metres that any vertex of the upper body may be outside: that is all it keeps
+    leg_margin: float = 0.001  # the same for legs: in narrow places they keep nothing
     head_margin: float = 0.0  # the same for the head: it ducks under things by no more than it must, and all look at it
 
     @property
     def slack(self) -> float:
         """Metres of the margin that a fit makes use of."""
         return 0.5 * self.margin
+
+    def tip_margin_of(self, part: str, group: DofGroup) -> float:
+        """Metres that any vertex of a part may be outside."""
+        if group is DofGroup.ROOT and part != PELVIS:
+            return self.leg_margin
+        return self.head_margin if part == _HEAD else self.tip_margin
 
     def of(self, part: str) -> "FitSettings":
         """How closely one part of the body is followed."""
@@ -100,23 +108,41 @@ def fit_capsules(skeleton: Skeleton, surface: Surface, settings: FitSettings | N
         shapes[name] = _Shapes(_grown(first, own, close), None) if few else _fitted(own, first, name, close)
     thickness = float(np.mean([shapes[f"{side}UpperArm"].one.radius for side in SIDES]))
     shapes[_SHOULDERS] = _Shapes(shapes[_SHOULDERS].one._replace(radius=thickness), None)
-    tips = _tips(skeleton, average, surface, settings)
-    slims = with_tips(_chosen(shapes, settings.capsules), tips, settings.capsules, settings.worth_it)
+    poses = poses_of(skeleton)
+    tips = _tips(skeleton, average, surface, poses, settings)
+    joints = dict(zip(average.names, average.joints.tolist(), strict=True))
+    limits = Limits(settings.capsules, settings.worth_it)
+    slims = with_tips(_chosen(shapes, settings.capsules), joints, tips, poses, limits)
     return Fit(_assembled(skeleton, average, slims), tuple(bare), tuple(slight))
 
 
-def _tips(skeleton: Skeleton, average: Capsules, surface: Surface, settings: FitSettings) -> dict[str, Tips]:
-    """The vertices of each part that has any."""
+def _tips(
+    skeleton: Skeleton, average: Capsules, surface: Surface, poses: Poses, settings: FitSettings
+) -> dict[str, Tips]:
+    """The surface of each part that has any vertices: from the ends of limbs inwards, but thighs last.
+
+    They hold what pelvis and shins leave to them; else both would be thick at the hips.
+    """
     parts, sampled = (part_of_points(skeleton, average, points) for points in (surface.vertices, surface.samples))
     found = {}
-    for part in np.unique(parts[parts >= 0]).tolist():
+    present = np.unique(parts[parts >= 0])[::-1].tolist()
+    for part in sorted(present, key=lambda part: average.names[part].endswith(_THIGH)):
         name = average.names[part]
-        upper = settings.head_margin if name == _HEAD else settings.tip_margin
-        margin = settings.margin if average.groups[part] is DofGroup.ROOT else upper
-        thinnest = 0.5 * settings.thinnest * float(average.radii[part])
-        points, samples = surface.vertices.positions[parts == part], surface.samples.positions[sampled == part]
-        found[name] = Tips(points, samples, margin, thinnest)
+        found[name] = Tips(
+            joint=int(average.joints[part]),
+            vertices=_posed(surface.posed[:, parts == part]),
+            samples=poses.sampled(surface.samples, np.flatnonzero(sampled == part)),
+            margin=settings.tip_margin_of(name, average.groups[part]),
+            loose=settings.of(name).margin,
+            thinnest=0.5 * settings.thinnest * float(average.radii[part]),
+            leans=leans_on(average, part),
+        )
     return found
+
+
+def _posed(places: Floats) -> PosedPoints:
+    """Vertices (P, V, 3) in all poses, one after the other."""
+    return PosedPoints(places.reshape(-1, 3), np.repeat(np.arange(len(places)), places.shape[1]))
 
 
 def _is_slight(first: Slim, own: Floats, settings: FitSettings) -> bool:

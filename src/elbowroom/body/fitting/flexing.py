@@ -1,9 +1,14 @@
-"""What skinned surfaces do at hips, knees, toes and elbows: samples as a rigid capsule of one joint sees them."""
+"""What skinned surfaces do at hips, knees, toes and elbows: a body in several poses, and what its joints see of it."""
+
+from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.fitting.body_mesh import BodyMesh
+from elbowroom.body.fitting.body_parts import BodyPoints
+from elbowroom.body.fitting.slim_capsule import Slim, distances
 from elbowroom.body.skeleton import Skeleton
 from elbowroom.geometry import quaternion
 
@@ -11,23 +16,90 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 # Degrees that thigh (forward), knee, toes and elbow of both sides are bent: standing, in mid-stride (left, right) with
-# arms that swing or fold, crouching.
-_STANDING = ((0.0, 0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 0.0))
+# arms that swing or fold, on a high step (left, right), crouching.
+_STRAIGHT = (0.0, 0.0, 0.0, 0.0)
 _AHEAD, _BEHIND = (30.0, 12.0, 25.0, 30.0), (-18.0, 35.0, 62.0, 70.0)
-_CROUCHING = ((55.0, 90.0, 0.0, 110.0), (55.0, 90.0, 0.0, 110.0))
+_RAISED, _CROUCHED = (60.0, 80.0, 10.0, 30.0), (55.0, 90.0, 0.0, 110.0)
 _X, _Y = 0, 1
 _BENT = {"UpperLeg": (_X, 0, -1.0), "LowerLeg": (_X, 1, 1.0), "Toes": (_X, 2, -1.0), "LowerArm": (_Y, 3, 1.0)}
-_POSES = (_STANDING, (_AHEAD, _BEHIND), (_BEHIND, _AHEAD), _CROUCHING)
+_POSES = (
+    (_STRAIGHT, _STRAIGHT),
+    (_AHEAD, _BEHIND),
+    (_BEHIND, _AHEAD),
+    (_RAISED, _STRAIGHT),
+    (_STRAIGHT, _RAISED),
+    (_CROUCHED, _CROUCHED),
+)
 
 
-def flexed(body: BodyMesh, skeleton: Skeleton, corners: Ints, shares: Floats, carriers: Ints) -> Floats:
+class PosedPoints(NamedTuple):
+    """Points of a surface, each where it is in one of several poses."""
+
+    places: Floats  # (N, 3) metres
+    pose: Ints  # (N,)
+
+
+@dataclass(frozen=True, eq=False)
+class Poses:
+    """The joints of a skeleton in all poses, the hips where they are in T-pose; the first is T-pose itself."""
+
+    rest: Floats  # (J, 3) where the joints are in T-pose
+    turns: Floats  # (P, J, 4) world rotations
+    places: Floats  # (P, J, 3)
+
+    def __len__(self) -> int:
+        return len(self.turns)
+
+    def carried(self, joints: Ints, points: Floats) -> Floats:
+        """Where T-posed points (..., 3) are in all poses (P, ..., 3), each carried by one of the joints (...)."""
+        moved: Floats = quaternion.rotate(self.turns[:, joints], points - self.rest[joints]) + self.places[:, joints]
+        return moved
+
+    def skinned(self, body: BodyMesh, vertices: Ints) -> Floats:
+        """Where some vertices (V,) of a body are in all poses (P, V, 3)."""
+        moved = self.carried(body.joints[vertices], body.places[vertices])
+        means: Floats = np.einsum("vk,pvki->pvi", body.weights[vertices], moved)
+        return means
+
+    def sampled(self, samples: BodyPoints, some: Ints) -> PosedPoints:
+        """Where some (S,) of the samples of a surface are, each in its pose: they are `in_turn`."""
+        pose = in_turn(len(samples.joints), self)[some]
+        placed = self.carried(samples.joints[some], samples.positions[some])
+        return PosedPoints(placed[pose, np.arange(len(some))], pose)
+
+    def seen(self, joint: int, points: PosedPoints) -> Floats:
+        """Points in the T-posed frame of a joint (N, 3)."""
+        back = quaternion.conjugate(self.turns[points.pose, joint])
+        ways = points.places - self.places[points.pose, joint]
+        still: Floats = quaternion.rotate(back, ways) + self.rest[joint]
+        return still
+
+    def outside(self, slim: Slim, joint: int, points: PosedPoints) -> Floats:
+        """How far points are outside a capsule that rides on a joint (N,), metres; negative inside."""
+        starts, ends = (self.carried(np.array(joint), end)[points.pose] for end in (slim.start, slim.end))
+        return distances(points.places, starts, ends) - slim.radius
+
+
+def poses_of(skeleton: Skeleton) -> Poses:
+    """A skeleton in all poses."""
+    rest, count = skeleton.positions, len(_POSES)
+    turns = np.tile(quaternion.IDENTITY, (count, len(rest), 1))
+    places = np.tile(rest, (count, 1, 1))
+    for joint, (bone, parent) in enumerate(zip(skeleton.names, skeleton.parents, strict=True)):
+        if parent < 0:
+            continue
+        turns[:, joint] = quaternion.multiply(turns[:, parent], _bent(bone))
+        places[:, joint] = places[:, parent] + quaternion.rotate(turns[:, parent], rest[joint] - rest[parent])
+    return Poses(rest, turns, places)
+
+
+def flexed(body: BodyMesh, poses: Poses, corners: Ints, shares: Floats, carriers: Ints) -> Floats:
     """Samples (S, 3) of a T-posed body, each in one of the poses in turn, in the T-posed frame of its carrier.
 
     A sample is the mean of the vertices `corners` (S, 3) with weights `shares` (S, 3), and is carried by a joint (S,).
     """
-    rest = skeleton.positions
-    turns, places = _posed(skeleton)
-    pose = np.arange(len(corners)) % len(_POSES)
+    rest, turns, places = poses.rest, poses.turns, poses.places
+    pose = in_turn(len(corners), poses)
     total = np.zeros((len(corners), 3))
     for corner in range(3):
         vertices = corners[:, corner]
@@ -40,17 +112,9 @@ def flexed(body: BodyMesh, skeleton: Skeleton, corners: Ints, shares: Floats, ca
     return seen
 
 
-def _posed(skeleton: Skeleton) -> tuple[Floats, Floats]:
-    """World rotations (P, J, 4) and places (P, J, 3) of the joints in all poses, the hips where they are in T-pose."""
-    rest = skeleton.positions
-    turns = np.tile(quaternion.IDENTITY, (len(_POSES), len(rest), 1))
-    places = np.tile(rest, (len(_POSES), 1, 1))
-    for joint, (bone, parent) in enumerate(zip(skeleton.names, skeleton.parents, strict=True)):
-        if parent < 0:
-            continue
-        turns[:, joint] = quaternion.multiply(turns[:, parent], _bent(bone))
-        places[:, joint] = places[:, parent] + quaternion.rotate(turns[:, parent], rest[joint] - rest[parent])
-    return turns, places
+def in_turn(count: int, poses: Poses) -> Ints:
+    """In which of the poses each of so many samples is (S,)."""
+    return np.arange(count) % len(poses)
 
 
 def _bent(bone: str) -> Floats:

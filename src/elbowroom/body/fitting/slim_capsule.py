@@ -36,6 +36,11 @@ class Slim(NamedTuple):
         length = float(np.linalg.norm(self.end - self.start))
         return math.pi * self.radius**2 * (length + 4.0 / 3.0 * self.radius)
 
+    @property
+    def turned(self) -> "Slim":
+        """The same from its end to its start."""
+        return Slim(self.end, self.start, self.radius)
+
     def outside(self, points: Floats) -> Floats:
         """How far each of the points (P, 3) is outside, metres; negative inside."""
         return distances(points, self.start, self.end) - self.radius

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from elbowroom.body.bones import SPINE
 from elbowroom.body.fitting.body_mesh import BodyMesh, triangle_areas
 from elbowroom.body.fitting.body_parts import BodyPoints
-from elbowroom.body.fitting.flexing import flexed
+from elbowroom.body.fitting.flexing import Poses, flexed, poses_of
 from elbowroom.body.pose.hands import relaxed_rotations
 from elbowroom.body.skeleton import Skeleton
 from elbowroom.geometry import quaternion
@@ -32,40 +32,46 @@ class Surface:
     """What a body looks like from outside, T-posed with its fingers relaxed, metres, in the skeleton's frame."""
 
     vertices: BodyPoints  # each with the joint of the greatest weight
-    samples: BodyPoints  # spread evenly over its area, with the legs in several poses
+    posed: Floats  # (P, V, 3) the vertices in the poses of `flexing.Poses`, which begin with T-pose
+    samples: BodyPoints  # spread evenly over its area, in those poses in turn
 
     def scaled(self, factor: float) -> "Surface":
         """The surface of an avatar so many times as large."""
-        return Surface(self.vertices.scaled(factor), self.samples.scaled(factor))
+        return Surface(self.vertices.scaled(factor), factor * self.posed, self.samples.scaled(factor))
+
+
+def used_vertices(body: BodyMesh) -> Ints:
+    """Which vertices have triangles (V,)."""
+    used: Ints = np.unique(body.triangles)
+    return used
 
 
 def vertex_points(body: BodyMesh) -> BodyPoints:
     """The vertices of the triangles."""
-    used = np.unique(body.triangles)
+    used = used_vertices(body)
     return BodyPoints(body.vertices()[used], body.joints[used, 0])
 
 
 def surface_of(body: BodyMesh, skeleton: Skeleton, count: int = SAMPLES) -> Surface:
     """The surface of a body mesh in the skeleton's frame, with `count` samples; none where it has no area."""
-    relaxed = with_relaxed_hands(body, skeleton)
-    vertices = relaxed.vertices()
-    corners = vertices[body.triangles]
-    areas = triangle_areas(corners)
+    relaxed, poses = with_relaxed_hands(body, skeleton), poses_of(skeleton)
+    posed = poses.skinned(relaxed, used_vertices(relaxed))
+    areas = triangle_areas(relaxed.vertices()[body.triangles])
     if not areas.sum() > 0.0:
-        return Surface(vertex_points(relaxed), BodyPoints(np.zeros((0, 3)), np.zeros(0, np.int64)))
+        return Surface(vertex_points(relaxed), posed, BodyPoints(np.zeros((0, 3)), np.zeros(0, np.int64)))
     which, shares = _spread(areas, count)
     found = [
-        _carried(relaxed, skeleton, relaxed.triangles[which[some]], shares[some])
+        _carried(relaxed, skeleton, poses, relaxed.triangles[which[some]], shares[some])
         for some in (slice(first, first + _AT_ONCE) for first in range(0, count, _AT_ONCE))
     ]
     places, joints = (np.concatenate(column) for column in zip(*found, strict=True))
-    return Surface(vertex_points(relaxed), BodyPoints(places, joints))
+    return Surface(vertex_points(relaxed), posed, BodyPoints(places, joints))
 
 
-def _carried(body: BodyMesh, skeleton: Skeleton, corners: Ints, shares: Floats) -> tuple[Floats, Ints]:
+def _carried(body: BodyMesh, skeleton: Skeleton, poses: Poses, corners: Ints, shares: Floats) -> tuple[Floats, Ints]:
     """Where samples (S, 3) are for the joints that carry them best, and these joints (S,)."""
     joints = _carriers(body, skeleton, corners, shares)
-    return flexed(body, skeleton, corners, shares, joints), joints
+    return flexed(body, poses, corners, shares, joints), joints
 
 
 def with_relaxed_hands(body: BodyMesh, skeleton: Skeleton) -> BodyMesh:

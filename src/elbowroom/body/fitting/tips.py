@@ -1,88 +1,218 @@
-"""What stands out of fitted capsules at single places: the tip of a nose, a lock of hair, the corner of a cube.
+"""What stands out of fitted capsules at single places: the tip of a nose, the edge of a sole, a kneecap.
 
 Capsules are fitted to points spread over the area, and may leave out a little of that, however far it stands out. But
-what is seen to pass through something is just such a tip. So every vertex is held in the end, by the least that holds
-it: a thicker capsule, another one for the whole part, or a small one more.
+what is seen to pass through something is just such a tip. So every vertex is held in the end, in every pose, by the
+least that holds it: a thicker capsule, others for the whole part, or a small one more.
 """
 
-from collections.abc import Mapping, Sequence
+import math
+from collections.abc import Iterable, Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from elbowroom.body.fitting.flexing import PosedPoints, Poses
 from elbowroom.body.fitting.slim_capsule import Slim, Wanted, slimmest
 
 Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+Riding = tuple[int, Slim]  # a capsule and the joint that it rides on
+Held = dict[str, tuple[Slim, ...]]  # the capsules of each part
 
-_LOOKED_AT = 600  # points that the search looks at
+
+def _even_directions(count: int) -> Floats:
+    """Unit vectors (3, count) that are about equally far apart: a spiral of equal steps by the golden angle."""
+    number = np.arange(count)
+    height = 1.0 - (2.0 * number + 1.0) / count
+    turn, out = math.pi * (3.0 - math.sqrt(5.0)) * number, np.sqrt(1.0 - height * height)
+    return np.stack([out * np.cos(turn), height, out * np.sin(turn)])
+
+
+_TURNS = 3  # that all parts have
+_DIRECTIONS = _even_directions(400)  # in which the outermost points are looked at: what holds these holds about all
+_SEARCHES = 2  # one after the other, the second also with what the first left out farthest
+_FARTHEST = 20  # such points
+_EVALUATIONS = 900  # of each search
+_CUT = 0.5  # of a part's length, where it is cut in two
+_FEWEST = 20  # points of either end
+_NOTHING = 1e-9  # metres
 _SLIGHT = 0.005  # metres: what stands out by no more is not worth a capsule more
 
 
 class Tips(NamedTuple):
-    """The vertices of one part of the body, and how it may be held."""
+    """The surface of one part of the body, and how it may be held."""
 
-    points: Floats  # (V, 3) metres
-    samples: Floats  # (S, 3) of the part's surface, which may have others' vertices
+    joint: int  # that carries the part
+    vertices: PosedPoints
+    samples: PosedPoints  # spread over its area, which may have others' vertices
     margin: float  # metres that the vertices may be outside
+    loose: float  # and those samples that were not farther outside
     thinnest: float  # metres: least radius of a capsule more
+    leans: tuple[
+        str, ...
+    ] = ()  # on these parts: what they hold in the poses it need not, their joints are in no others
+
+
+class Limits(NamedTuple):
+    """What capsules there may be."""
+
+    most: int  # in all
+    worth_it: float  # a capsule more has at most this part of the volume that it spares, two have of that of one
+
+
+class _Seen(NamedTuple):
+    """Points of a part that are to be held, as its joint sees them."""
+
+    points: Floats  # (N, 3)
+    slack: Floats  # (N,) metres that each may be outside
+
+    def of(self, some: NDArray[np.bool_]) -> "_Seen":
+        return _Seen(self.points[some], self.slack[some])
+
+    def lacking(self, slims: Sequence[Slim]) -> Floats:
+        """How much farther outside of all capsules than it may be each point is (N,), metres."""
+        lacking: Floats = np.min([slim.outside(self.points) for slim in slims], axis=0) - self.slack
+        return lacking
+
+    def beyond(self, slims: Sequence[Slim]) -> "_Seen":
+        """Those that are too far outside."""
+        return self.of(self.lacking(slims) > _NOTHING)
 
 
 def with_tips(
-    slims: Mapping[str, tuple[Slim, ...]], tips: Mapping[str, Tips], most: int, worth_it: float
-) -> dict[str, tuple[Slim, ...]]:
-    """The capsules of each part, so that all vertices of the parts in `tips` are held by those of any part.
+    slims: Mapping[str, tuple[Slim, ...]],
+    joints: Mapping[str, int],
+    tips: Mapping[str, Tips],
+    poses: Poses,
+    limits: Limits,
+) -> Held:
+    """The capsules of each part, so that those of any part hold all vertices of the parts in `tips` in all poses.
 
-    There are `most` in all at most. One more is taken where it has less than `worth_it` of the volume that it spares.
+    Each part rides on one of the `joints`. They are looked at in the order of `tips`, and again while a capsule that is
+    another now has let go of what another part left to it; in the end capsules only grow.
     """
-    held = dict(slims)
-    for name, own in tips.items():
-        every = [slim for some in held.values() for slim in some]
-        outside = _outside(every, own.points)
-        far, slight = own.points[outside > own.margin], outside.max() <= own.margin + _SLIGHT
-        if len(far):
-            held[name] = _holding(held[name], far, own, 0.0 if slight or len(every) >= most else worth_it)
-    return held
+    search = _Search(dict(slims), joints, tips, poses)
+    for turn in range(_TURNS):
+        for name, own in tips.items():
+            left = search.left(name)
+            far = left.beyond(search.held[name])
+            if len(far.points) or (own.leans and not turn):
+                full = sum(map(len, search.held.values())) >= limits.most
+                every = left if own.leans else search.wanted(name)
+                search.held[name] = _holding(search.held[name], every, far, own, 0.0 if full else limits.worth_it)
+    for name in tips:
+        search.held[name] = _grown(search.held[name], search.left(name).beyond(search.held[name]))
+    return search.held
 
 
-def _holding(slims: tuple[Slim, ...], far: Floats, own: Tips, worth_it: float) -> tuple[Slim, ...]:
-    """The capsules of a part so that what is too far outside is held."""
-    found = [_grown(slims, far, own.margin)]
-    if len(slims) == 1:
-        found.append((_anew(slims[0], far, own),))
-    best = min(found, key=_volume)
-    added = (*slims, _round(far, own))
+class _Search:
+    """The capsules of all parts, and what is to be held of each: vertices, and samples that were held at first."""
+
+    def __init__(self, held: Held, joints: Mapping[str, int], tips: Mapping[str, Tips], poses: Poses) -> None:
+        self.held, self._joints, self._tips, self._poses = held, joints, tips, poses
+        self._wanted = {name: _wanted(own, held[name], poses) for name, own in tips.items()}
+
+    def wanted(self, name: str) -> _Seen:
+        """All that is to be held of a part."""
+        return self._seen(name, [])
+
+    def left(self, name: str) -> _Seen:
+        """What no other part holds of it, or none of those on which it leans."""
+        others = [other for other in self._tips[name].leans or self.held if other != name]
+        return self._seen(name, [(self._joints[other], slim) for other in others for slim in self.held[other]])
+
+    def _seen(self, name: str, others: Iterable[Riding]) -> _Seen:
+        """What is to be held of a part, as its joint sees it, and none of `others` holds."""
+        points, slack = self._wanted[name]
+        beyond = np.ones(len(slack), bool)
+        for joint, slim in others:
+            beyond &= self._poses.outside(slim, joint, points) > slack
+        left = PosedPoints(points.places[beyond], points.pose[beyond])
+        return _Seen(self._poses.seen(self._tips[name].joint, left), slack[beyond])
+
+
+def _wanted(own: Tips, slims: Sequence[Slim], poses: Poses) -> tuple[PosedPoints, Floats]:
+    """All that is to be held of a part, and how far each may be outside: vertices, and samples that are held now."""
+    kept = np.min([poses.outside(slim, own.joint, own.samples) for slim in slims], axis=0) <= own.loose
+    places = np.concatenate([own.vertices.places, own.samples.places[kept]])
+    pose = np.concatenate([own.vertices.pose, own.samples.pose[kept]])
+    slack = np.full(len(pose), own.loose)
+    slack[: len(own.vertices.pose)] = own.margin
+    return PosedPoints(places, pose), slack
+
+
+def _holding(slims: tuple[Slim, ...], every: _Seen, far: _Seen, own: Tips, worth_it: float) -> tuple[Slim, ...]:
+    """The capsules of a part so that those points are held that are too far outside."""
+    best = min(_grown(slims, far), _anew(slims, every, own), key=_volume)
+    if len(slims) == 1 and own.leans:
+        two = min((_in_two(slim, every, own) for slim in (best[0], best[0].turned)), key=_volume)
+        best = two if _volume(two) < worth_it * _volume(best) else best
+    if far.lacking(slims).max(initial=0.0) <= _SLIGHT:
+        return best
+    more = _round(far.points, (far.points.min(axis=0), far.points.max(axis=0)), own.margin)
+    added = (*slims, more._replace(radius=max(more.radius, own.thinnest)))
     return added if _volume(added) - _volume(slims) < worth_it * (_volume(best) - _volume(slims)) else best
 
 
-def _grown(slims: tuple[Slim, ...], far: Floats, margin: float) -> tuple[Slim, ...]:
-    """The capsules, of which the nearest to each of the points (F, 3) is as thick as to hold it."""
-    gaps = np.array([slim.outside(far) for slim in slims])
-    nearest = np.arange(len(slims))[:, None] == gaps.argmin(axis=0)
-    lacking = np.where(nearest, gaps - margin, 0.0).max(axis=1)
-    return tuple(slim._replace(radius=slim.radius + float(more)) for slim, more in zip(slims, lacking, strict=True))
+def _grown(slims: tuple[Slim, ...], far: _Seen) -> tuple[Slim, ...]:
+    """The capsules, of which the nearest to each of the points is as thick as to hold it."""
+    nearest = np.arange(len(slims))[:, None] == _nearest(slims, far.points)
+    lacking = np.where(nearest, [far.lacking([slim]) for slim in slims], 0.0).max(axis=1, initial=0.0)
+    return tuple(
+        slim._replace(radius=slim.radius + float(more)) if more > 0.0 else slim
+        for slim, more in zip(slims, lacking, strict=True)
+    )
 
 
-def _anew(slim: Slim, far: Floats, own: Tips) -> Slim:
-    """The slimmest capsule that holds all vertices of a part, and what of its surface was held before."""
-    kept = own.samples[slim.outside(own.samples) <= own.margin]
-    points = np.concatenate([own.points, kept])
-    some = np.concatenate([points[:: max(1, -(-len(points) // _LOOKED_AT))], far])
-    found = slimmest(some, slim.start, slim.end, Wanted(1.0, own.margin))
-    lacking = float((found.outside(points) - own.margin).max())
-    return found._replace(radius=found.radius + max(lacking, 0.0))
+def _anew(slims: tuple[Slim, ...], every: _Seen, own: Tips) -> tuple[Slim, ...]:
+    """The slimmest capsules that hold the points nearest to each, where one holds too little or a part leans."""
+    nearest, lacking = _nearest(slims, every.points), every.lacking(slims) > _NOTHING
+    wanted = lacking | (len(own.leans) > 0)
+    return tuple(
+        _closest(every.of(nearest == n), slim, own) if np.any(wanted[nearest == n]) else slim
+        for n, slim in enumerate(slims)
+    )
 
 
-def _round(far: Floats, own: Tips) -> Slim:
-    """The slimmest capsule round some points."""
-    found = slimmest(far, far.min(axis=0), far.max(axis=0), Wanted(1.0, own.margin))
-    return found._replace(radius=max(found.radius, own.thinnest))
+def _in_two(slim: Slim, every: _Seen, own: Tips) -> tuple[Slim, ...]:
+    """Capsules of one end of a part, and of what that one leaves out: slimmer where the part tapers."""
+    if len(every.points) < 2 * _FEWEST:
+        return (slim,)
+    along = every.points @ (slim.end - slim.start)
+    end = along > along.min() + _CUT * np.ptp(along)
+    if min(np.count_nonzero(end), np.count_nonzero(~end)) < _FEWEST:
+        return (slim,)
+    first = _closest(every.of(end), slim, own)
+    rest = every.beyond([first])
+    return (first, _closest(rest, slim, own)) if len(rest.points) else (first,)
 
 
-def _outside(slims: Sequence[Slim], points: Floats) -> Floats:
-    """How far points (P, 3) are outside all capsules, metres."""
-    gaps: Floats = np.min([slim.outside(points) for slim in slims], axis=0)
-    return gaps
+def _closest(mine: _Seen, slim: Slim, own: Tips) -> Slim:
+    """The slimmest capsule round points, sought from another."""
+    axis = slim.start, slim.end
+    strict = mine.of(mine.slack <= own.margin) if np.any(mine.slack <= own.margin) else mine
+    found = _round(strict.points, axis, own.margin)
+    lost = mine.beyond([found]).points
+    if len(lost):
+        found = _round(np.concatenate([strict.points, lost]), axis, own.margin)
+    return found._replace(radius=found.radius + max(float(mine.lacking([found]).max()), 0.0))
+
+
+def _round(points: Floats, axis: tuple[Floats, Floats], margin: float) -> Slim:
+    """The slimmest capsule round some points (N, 3), sought from an axis."""
+    some = points[np.unique(np.argmax(points @ _DIRECTIONS, axis=0))]
+    for _ in range(_SEARCHES):
+        found = slimmest(some, *axis, Wanted(1.0, margin, _EVALUATIONS))
+        outside = found.outside(points)
+        axis, some = (found.start, found.end), np.concatenate([some, points[np.argsort(-outside)[:_FARTHEST]]])
+    return found._replace(radius=found.radius + max(float(outside.max()) - margin, 0.0))
+
+
+def _nearest(slims: Sequence[Slim], points: Floats) -> Ints:
+    """Which of the capsules is nearest to each of the points (N,)."""
+    nearest: Ints = np.argmin([slim.outside(points) for slim in slims], axis=0)
+    return nearest
 
 
 def _volume(slims: tuple[Slim, ...]) -> float:

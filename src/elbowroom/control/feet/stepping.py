@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.dof import LOWERING, DofGroup, columns_of
-from elbowroom.body.fitting.fit import MARGIN
+from elbowroom.body.fitting.fit import FitSettings
 from elbowroom.body.gait.foot_state import standing
 from elbowroom.body.gait.footholds import UNKNOWN, beside, settled
 from elbowroom.body.gait.gliding import gliding
@@ -42,6 +42,7 @@ _FOLDED = 0.02  # metres from trunk to thighs, beyond what they may come near: w
 _SAME = 1e-9  # metres and radians
 _STRAIN = 0.3  # half leg lengths that hips come down, beyond the stride, to a foot that waits
 _TWIST, _HEAD_TURN = (columns_of(group).start + 1 for group in (DofGroup.WAIST, DofGroup.HEAD))
+_SKIN = FitSettings().tip_margin  # metres that skin of the upper body may be outside of its capsules
 _FARTHER = 0.002  # metres that another way has to keep off more, to be taken for it
 _LONG = 60.0  # seconds in which feet have glided wherever they were planned
 
@@ -183,10 +184,10 @@ class Stepping:
         near: list[tuple[float, Playback]] = []
         for way in ways:
             room = moment.room_above(way.root, way.upper)
-            if room >= MARGIN and not near:
+            if room >= _SKIN and not near:
                 yield way
             else:
-                near.append((min(room, MARGIN), way))
+                near.append((min(room, _SKIN), way))
         while near:
             best = 0
             for n, (room, _) in enumerate(near):
@@ -210,25 +211,19 @@ class Stepping:
         """How a pose can be shown on feet that follow in one of the ways: best first.
 
         On ground that is not plain there are more: on arms that make way for the legs or do not, and where feet glide
-        they are raised slowly or hastily, or are at once where they were planned. Skin may be a little outside the
-        capsules, so legs that have less room than that come last.
+        they are raised slowly or hastily, or are at once where they were planned.
         """
-        moment, posed = it.moment, it.posed
+        posed = it.posed
         if self._footing.plain:
             made = it.made(how)
             yield from self._less_apart(posed._replace(root=made.root), made.gaps)
             return
-        close, as_planned = list[Playback](), list[Playback]()
+        as_planned = list[Playback]()
         for root in [it.made(how).root] if how != GLIDES else self._glides(it):
             upper = self._arms.apart(root, posed.upper)
             if upper is not posed.upper:
                 as_planned += self._less_apart(posed._replace(root=root))
-            pose = posed._replace(root=root, upper=upper)
-            if moment.look(root, upper).room < MARGIN:
-                close.append(pose)
-            else:
-                yield pose
-        yield from close
+            yield posed._replace(root=root, upper=upper)
         yield from as_planned
 
     def _posing(self, moment: Moment, posed: Playback) -> Posing:

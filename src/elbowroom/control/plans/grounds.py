@@ -14,7 +14,6 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.body.fitting.fit import MARGIN
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.root import RootState
 from elbowroom.clips.motion_set import MotionSet
@@ -50,13 +49,10 @@ class Grounds:
 
     @cached_property
     def climbed(self) -> PlanningScene | None:
-        """Where it climbs, made when it is first looked for; None where that leads no farther.
-
-        So far skin may be outside of capsules, and is where feet are raised high: that much is spared.
-        """
+        """Where it climbs, made when it is first looked for; None where that leads no farther."""
         humanoid, scene, settings, motions = self._made_of
         climbed = as_climbed(scene, humanoid)
-        return None if climbed is None else PlanningScene(humanoid, climbed, settings, motions, MARGIN)
+        return None if climbed is None else PlanningScene(humanoid, climbed, settings, motions)
 
     def around(self, *, climbs: bool) -> PlanningScene:
         """Where it walks, or climbs, if that leads anywhere else."""

@@ -18,14 +18,9 @@ from elbowroom.world.scene import Scene
 class PlanningScene:
     """A scene as one avatar's controller uses it; where something else stands, there is a new one."""
 
-    def __init__(
-        self, humanoid: Humanoid, scene: Scene, settings: ControlSettings, motions: MotionSet, spare: float = 0.0
-    ) -> None:
-        """`motions` are as they fit the humanoid. Planners and navigator are made when they are first needed.
-
-        A pose that is shown keeps `spare` metres, where the one before it had as much.
-        """
-        self._humanoid, self.scene, self.spare = humanoid, scene, spare
+    def __init__(self, humanoid: Humanoid, scene: Scene, settings: ControlSettings, motions: MotionSet) -> None:
+        """`motions` are as they fit the humanoid. Planners and navigator are made when they are first needed."""
+        self._humanoid, self.scene = humanoid, scene
         self.free_map = scene.free_map
         self.check = BodyCheck(humanoid, scene)
         # of other planners what is shown would be held for ever: they do not keep out of their own body

@@ -85,7 +85,6 @@ class BodyCheck:
         self._nowhere = np.full(len(self._radii), np.inf, np.float32)  # the gaps where nothing stands
         self._legs: list[int] = self.model.roots.indices.tolist()  # the numbers of their capsules
         self._above = [number for number in range(len(self._radii)) if number not in self._legs]
-        self._knees: list[int] = np.flatnonzero(np.isin(self.model.body.joints, self.model.figure.legs[:, :2])).tolist()
         self._poses: tuple[_Pose, ...] = ()  # latest first
         self._between: tuple[Frames, FramePair] | None = None  # the frames that were asked about last
         self.others: Sequence[Neighbour] = ()  # other avatars, as they say that they will move
@@ -154,10 +153,6 @@ class BodyCheck:
     def room_above(self, root: Floats, upper: Floats) -> float:
         """Metres from all that is carried by pelvis and legs to what stands."""
         return np.inf if self._empty else _least(self._pose(root, upper).rooms, self._above)
-
-    def room_about_knees(self, root: Floats, upper: Floats) -> float:
-        """Metres from thighs and shins to what stands."""
-        return np.inf if self._empty else _least(self._pose(root, upper).rooms, self._knees)
 
     def room_of_trunk(self, root: Floats, upper: Floats, time: float) -> float:
         """The same of all that is carried by the shins: what feet stand on, and go over, is no nearer for them."""

@@ -5,7 +5,6 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.body.fitting.fit import MARGIN
 from elbowroom.body.gait.footholds import UNKNOWN
 from elbowroom.body.root import RootState
 from elbowroom.control.feet.feet import Around, Moment
@@ -128,7 +127,7 @@ class Showing:
             return
         posed = before.pose
         clearance = self._clearance_of(posed.root, posed.upper)
-        if self._around.check.accompanied and not self._touches_nothing(posed, clearance, self._frames_to(posed)):
+        if self._around.check.accompanied and not self._touches_nothing(clearance, self._frames_to(posed)):
             self._retracing.give_up()
             return
         self._retracing.went()
@@ -228,17 +227,14 @@ class Showing:
     def _is_free(self, posed: Playback, clearance: float) -> bool:
         """Whether the pose can be shown: neither it nor the way to it touches anything, or is in itself."""
         frames = self._frames_to(posed)
-        return self._touches_nothing(posed, clearance, frames) and self._keeps_out_of_itself(frames)
+        return self._touches_nothing(clearance, frames) and self._keeps_out_of_itself(frames)
 
-    def _touches_nothing(self, posed: Playback, clearance: float, frames: Frames) -> bool:
+    def _touches_nothing(self, clearance: float, frames: Frames) -> bool:
         """Whether a pose touches nothing that stands or moves about it, nor the way to it from what is shown."""
         check = self._around.check
         if check.restless and self._clearance < 0.0 and clearance >= self._clearance:
             return True  # away from what has come upon it
-        spare = 0.0 if self.holding.active else min(self._around.spare, self._clearance)
-        if clearance < max(spare, 0.0) or not self._leaves_knees_room(posed):
-            return False
-        return check.leaves_room(frames) and check.free_between(frames)
+        return clearance >= 0.0 and check.leaves_room(frames) and check.free_between(frames)
 
     def _keeps_out_of_itself(self, frames: Frames) -> bool:
         """Whether no part of the body comes deeper into another than it may, from the pose that is shown on.
@@ -252,17 +248,6 @@ class Showing:
         """What is shown, and the pose that comes next."""
         shown = self._pose
         return Frames((shown.root, posed.root), (shown.upper, posed.upper), (self._posed_at, self._now))
-
-    def _leaves_knees_room(self, posed: Playback) -> bool:
-        """Whether skin that may be outside of its capsules has room about bent knees, or as much as there was.
-
-        Asked where legs go up and down.
-        """
-        check, shown = self._around.check, self._pose
-        if check.footing.plain or self.holding.active:
-            return True
-        room = check.room_about_knees(posed.root, posed.upper)
-        return room >= MARGIN or room >= check.room_about_knees(shown.root, shown.upper)
 
     def _show(self, pose: Playback, clearance: float, *, back: bool = False) -> None:
         if clearance < 0.0 or self._clearance < 0.0 or not self.assist:

@@ -37,9 +37,9 @@ class RootPlannerSettings:
     worth_going_round: float = 0.6  # metres more that are walked so as not to go through a gap with turned shoulders
     going_round: tuple[float, float] = (0.20, 0.08)  # the search for that, as those for a detour
     # Searches for a detour, in turn: the clearance that it must have, and the cells of the map.
-    searches: tuple[tuple[float, float], ...] = ((0.10, 0.08), (0.02, 0.08), (0.01, 0.04))
-    margin: float = 0.01  # clearance of the straight route
-    skin: float = 0.01  # clearance that posed legs keep along a path
+    searches: tuple[tuple[float, float], ...] = ((0.10, 0.08), (0.02, 0.08), (0.003, 0.04))
+    margin: float = 0.003  # clearance of the straight route
+    skin: float = 0.003  # clearance that posed legs keep along a path
     spacing: float = 0.0125  # seconds between checked states
     untroubled: float = 0.15  # seconds lost below which nothing else is thought of
     dead_end: float = 2.0  # seconds that a route costs that ends before an obstacle

@@ -55,7 +55,7 @@ class EvasionSettings:
     widest: float = 0.48  # from the line of travel, to either side
     turns: int = 4  # turned postures to either side
     most: float = 0.5 * math.pi  # the body is turned by at most this
-    margin: float = 0.012  # clearance that legs and pelvis must have
+    margin: float = 0.003  # clearance that legs and pelvis must have
     swerving: float = 0.02  # more of it where the body turns on the way
     comfort: float = 0.06  # clearance below which it costs
     beside: float = 2.0  # of each metre walked, for the squared distance from the line
