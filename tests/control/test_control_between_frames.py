@@ -70,6 +70,17 @@ AFTER = (
 )  # fmt: skip
 
 
+# A foot comes down at the end of its swing; what tells of the swing ends with it.
+LANDING = (
+    0.0, 0.0, 0.355, 0.861, 0.096, 0.456, 0.991, 0.005, 0.0, 0.0, 0.0, 0.0, 0.0,
+    0.143, 0.299, 0.086, -0.217, 0.0, 0.976, -0.27, 0.147, 0.101, -0.105, -0.237, -0.355, 0.032, 0.0, 0.0,
+)  # fmt: skip
+LANDED = (
+    0.007, 0.013, 0.362, 0.895, 0.093, 0.416, 1.005, 0.005, 0.0, 0.0, 0.0, 0.0, 0.0,
+    0.137, 0.29, 0.079, -0.227, 0.0, 0.0, 0.0, 0.0, 0.0, -0.104, -0.252, -0.362, 0.044, 0.0, 0.0,
+)  # fmt: skip
+
+
 def shown(values: tuple[float, ...]) -> np.ndarray:
     return np.array([*values, *[0.0] * (SHOWN - len(values))])
 
@@ -88,3 +99,15 @@ def test_a_foot_that_is_put_elsewhere_at_once_is_looked_at_all_the_way() -> None
     verdict = judge(ShownMotion.at_rate(q, np.stack(rows)), AVATAR, scene, JudgeSettings(mesh=False))
     assert verdict.capsules.touching > 0
     assert not check.free_between(Frames(rows, (upper, upper), (0.0, 1 / 60)))
+
+
+def test_a_foot_that_lands_is_held_no_lower_on_the_way() -> None:
+    """Half of what told of its swing would have it in mid-air on the plane, and so hardly held at all."""
+    sill = {"type": "box", "center": [0.0, 0.05, 5.0], "size": [2.0, 0.1, 0.3]}
+    check = BodyCheck(Humanoid.default(), Scene.of("sill", [sill], finish=(0.0, 9.0)))
+    frames = Frames((shown(LANDING), shown(LANDED)), (np.zeros(LOCAL), np.zeros(LOCAL)), (0.0, 1 / 60))
+    body = check.soles.body
+    assert len(body.feet) > 0
+    held = held_between(body, check.between(frames), frames.uppers, SHARES)
+    lowest = (np.minimum(held[:, 1], held[:, 4]) - body.radii[:, None])[body.feet]
+    assert (lowest >= np.minimum(lowest[:, :1], lowest[:, -1:]) - 5e-4).all()

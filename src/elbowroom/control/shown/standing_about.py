@@ -33,7 +33,6 @@ HALVINGS = plain(9)  # of the time between two frames
 OTHERS = 2  # what is no foot
 EVEN = 5e-4  # metres by which what feet stand on may differ and be one height
 _QUICKLY, _FAR = 0.01, 0.1  # metres between two frames: soles of who goes up or down by more, or farther, are looked at
-_LIFTS = 0.015  # metres that the height at which feet are held changes at most beside what it does on the whole
 _OVER_GROUND = 0.004  # metres that feet are held higher where the ground that they stand on is left out
 
 
@@ -138,15 +137,21 @@ def gaps_about(
 def held_between(body: ShownBody, frames: FramePair, uppers: Both, shares: Floats) -> Floats32:
     """The capsules (C, 6, N) at `shares` (N,) of the time between two frames, as seen from the first one's place.
 
-    As screens show them, but for feet: those are as high as they are held. `uppers` (LOCAL,) are those of the frames.
+    As screens show them, but for feet: those are as high as they are held, evenly from one frame to the other: root
+    states in between are none where a foot comes down, since what they tell of its swing ends there. `uppers` (LOCAL,)
+    are those of the frames.
     """
     axes = capsules_between(body.whole, frames, shares)
     if len(body.feet) > 0:
-        roots, q = np.empty((len(shares), frames.roots.shape[1])), np.zeros((len(shares), DOF))
+        lifts, q = np.zeros((len(body.radii), 6, 2), np.float32), np.zeros((2, DOF))
+        for end in range(2):
+            q[end, DOF - LOCAL :] = uppers[end]
+        hold_feet(body, q, frames.roots, lifts)
         for n in range(len(shares)):
-            roots[n] = frames.roots[0] + shares[n] * (frames.roots[1] - frames.roots[0])
-            q[n, DOF - LOCAL :] = uppers[0] + shares[n] * (uppers[1] - uppers[0])
-        hold_feet(body, q, roots, axes)
+            for foot in body.feet:
+                lift = lifts[foot, 1, 0] + np.float32(shares[n]) * (lifts[foot, 1, 1] - lifts[foot, 1, 0])
+                axes[foot, 1, n] += lift
+                axes[foot, 4, n] += lift
     return axes
 
 
@@ -185,10 +190,7 @@ def ways_between(body: ShownBody, frames: FramePair, axes: BothAxes) -> Floats:
     for end in range(0, 6, 3):
         both[:, end, 1] += frames.roots[1, 0]
         both[:, end + 2, 1] += frames.roots[1, 1]
-    ways = speeds_between(body.whole, frames, both)
-    for foot in body.feet:
-        ways[foot] += _LIFTS
-    return ways
+    return speeds_between(body.whole, frames, both)
 
 
 @brief_exact_kernel
