@@ -6,7 +6,7 @@ least that holds it: a thicker capsule, others for the whole part, or a small on
 """
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -17,16 +17,15 @@ from elbowroom.body.fitting.slim_capsule import Slim, Wanted, slimmest
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
-Riding = tuple[int, Slim]  # a capsule and the joint that it rides on
 Held = dict[str, tuple[Slim, ...]]  # the capsules of each part
 
 
 def _even_directions(count: int) -> Floats:
-    """Unit vectors (3, count) that are about equally far apart: a spiral of equal steps by the golden angle."""
+    """Unit vectors (count, 3) that are about equally far apart: a spiral of equal steps by the golden angle."""
     number = np.arange(count)
     height = 1.0 - (2.0 * number + 1.0) / count
     turn, out = math.pi * (3.0 - math.sqrt(5.0)) * number, np.sqrt(1.0 - height * height)
-    return np.stack([out * np.cos(turn), height, out * np.sin(turn)])
+    return np.stack([out * np.cos(turn), height, out * np.sin(turn)], axis=1)
 
 
 _TURNS = 3  # that all parts have
@@ -68,6 +67,7 @@ class _Seen(NamedTuple):
     slack: Floats  # (N,) metres that each may be outside
 
     def of(self, some: NDArray[np.bool_]) -> "_Seen":
+        """Some of them."""
         return _Seen(self.points[some], self.slack[some])
 
     def lacking(self, slims: Sequence[Slim]) -> Floats:
@@ -95,14 +95,13 @@ def with_tips(
     search = _Search(dict(slims), joints, tips, poses)
     for turn in range(_TURNS):
         for name, own in tips.items():
-            left = search.left(name)
-            far = left.beyond(search.held[name])
+            far = search.far(name)
             if len(far.points) or (own.leans and not turn):
                 full = sum(map(len, search.held.values())) >= limits.most
-                every = left if own.leans else search.wanted(name)
+                every = search.left(name) if own.leans else search.wanted[name]
                 search.held[name] = _holding(search.held[name], every, far, own, 0.0 if full else limits.worth_it)
     for name in tips:
-        search.held[name] = _grown(search.held[name], search.left(name).beyond(search.held[name]))
+        search.held[name] = _grown(search.held[name], search.far(name))
     return search.held
 
 
@@ -111,28 +110,30 @@ class _Search:
 
     def __init__(self, held: Held, joints: Mapping[str, int], tips: Mapping[str, Tips], poses: Poses) -> None:
         self.held, self._joints, self._tips, self._poses = held, joints, tips, poses
-        self._wanted = {name: _wanted(own, held[name], poses) for name, own in tips.items()}
-
-    def wanted(self, name: str) -> _Seen:
-        """All that is to be held of a part."""
-        return self._seen(name, [])
+        self._points, self.wanted = dict[str, PosedPoints](), dict[str, _Seen]()
+        for name, own in tips.items():
+            points, slack = _to_hold(own, held[name], poses)
+            self._points[name], self.wanted[name] = points, _Seen(poses.seen(own.joint, points), slack)
 
     def left(self, name: str) -> _Seen:
-        """What no other part holds of it, or none of those on which it leans."""
-        others = [other for other in self._tips[name].leans or self.held if other != name]
-        return self._seen(name, [(self._joints[other], slim) for other in others for slim in self.held[other]])
+        """What no other part holds of one, or none of those on which it leans."""
+        return self._beyond_others(name, np.ones(len(self.wanted[name].slack), bool))
 
-    def _seen(self, name: str, others: Iterable[Riding]) -> _Seen:
-        """What is to be held of a part, as its joint sees it, and none of `others` holds."""
-        points, slack = self._wanted[name]
-        beyond = np.ones(len(slack), bool)
-        for joint, slim in others:
-            beyond &= self._poses.outside(slim, joint, points) > slack
-        left = PosedPoints(points.places[beyond], points.pose[beyond])
-        return _Seen(self._poses.seen(self._tips[name].joint, left), slack[beyond])
+    def far(self, name: str) -> _Seen:
+        """What of that is too far outside of its own capsules too."""
+        return self._beyond_others(name, self.wanted[name].lacking(self.held[name]) > _NOTHING)
+
+    def _beyond_others(self, name: str, some: NDArray[np.bool_]) -> _Seen:
+        """Those of some points of a part that no other part holds."""
+        rows, (places, pose), slack = np.flatnonzero(some), self._points[name], self.wanted[name].slack
+        for other in self._tips[name].leans or self.held:
+            for slim in self.held[other] if other != name else ():
+                points = PosedPoints(places[rows], pose[rows])
+                rows = rows[self._poses.outside(slim, self._joints[other], points) > slack[rows]]
+        return _Seen(self.wanted[name].points[rows], slack[rows])
 
 
-def _wanted(own: Tips, slims: Sequence[Slim], poses: Poses) -> tuple[PosedPoints, Floats]:
+def _to_hold(own: Tips, slims: Sequence[Slim], poses: Poses) -> tuple[PosedPoints, Floats]:
     """All that is to be held of a part, and how far each may be outside: vertices, and samples that are held now."""
     kept = np.min([poses.outside(slim, own.joint, own.samples) for slim in slims], axis=0) <= own.loose
     places = np.concatenate([own.vertices.places, own.samples.places[kept]])
@@ -201,7 +202,7 @@ def _closest(mine: _Seen, slim: Slim, own: Tips) -> Slim:
 
 def _round(points: Floats, axis: tuple[Floats, Floats], margin: float) -> Slim:
     """The slimmest capsule round some points (N, 3), sought from an axis."""
-    some = points[np.unique(np.argmax(points @ _DIRECTIONS, axis=0))]
+    some = points[np.unique(np.argmax(_DIRECTIONS @ points.T, axis=1))]
     for _ in range(_SEARCHES):
         found = slimmest(some, *axis, Wanted(1.0, margin, _EVALUATIONS))
         outside = found.outside(points)
