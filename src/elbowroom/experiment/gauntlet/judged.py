@@ -17,14 +17,20 @@ def judged_walk(humanoid: Humanoid, scene: Scene, shown: list[Frame]) -> JudgeFi
     q, roots = np.stack([frame.q for frame in shown]), np.stack([frame.root for frame in shown])
     verdict = judge(ShownMotion.at_rate(q, roots, 1.0 / DT), humanoid, scene)
     least, mesh = verdict.capsules.least, verdict.mesh
+    nearest = None if mesh is None else mesh.least
     return JudgeFigures(
         poses=verdict.poses,
         touching=verdict.capsules.touching,
-        deepest=verdict.capsules.deepest,
-        least_clearance=None if least is None else least.clearance,
+        deepest=_told(verdict.capsules.deepest),
+        least_clearance=None if least is None else _told(least.clearance),
         self_touching=verdict.itself.touching,
-        self_deepest=verdict.itself.deepest,
+        self_deepest=_told(verdict.itself.deepest),
         mesh_touching=None if mesh is None else mesh.touching,
-        mesh_deepest=None if mesh is None else mesh.deepest,
-        mesh_clearance=None if mesh is None or mesh.least is None else mesh.least.clearance,
+        mesh_deepest=None if mesh is None else _told(mesh.deepest),
+        mesh_clearance=None if nearest is None else _told(nearest.clearance),
     )
+
+
+def _told(metres: float) -> float:
+    """To a tenth of a micrometre: farther the library's search for nearest points is not the same in every process."""
+    return round(metres, 7)
