@@ -14,8 +14,9 @@ Open = Callable[..., LivePage]
 
 
 # Where the body is, as shares of its height from the top, and how much overlays may change its colours there (of 255).
-# When they were drawn evenly over it, they changed the trunk by 21 to 41 and the hips by 35 to 76.
-PARTS = {"trunk": (0.22, 0.42, 14.0), "hips": (0.48, 0.6, 32.0)}
+# When they were drawn evenly over it, they changed the trunk by 21 to 41 and the hips by 35 to 76, with a capsule
+# less on each thigh than now.
+PARTS = {"trunk": (0.22, 0.42, 14.0), "hips": (0.48, 0.6, 40.0)}
 
 
 def body(live: LivePage) -> dict[str, NDArray[np.float64]]:
