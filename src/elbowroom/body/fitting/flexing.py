@@ -67,8 +67,8 @@ class Poses:
         placed = self.carried(samples.joints[some], samples.positions[some])
         return PosedPoints(placed[pose, np.arange(len(some))], pose)
 
-    def seen(self, joint: int, points: PosedPoints) -> Floats:
-        """Points in the T-posed frame of a joint (N, 3)."""
+    def seen(self, joint: int | Ints, points: PosedPoints) -> Floats:
+        """Points in the T-posed frame of a joint, or each in that of its own (N,): (N, 3) metres."""
         back = quaternion.conjugate(self.turns[points.pose, joint])
         ways = points.places - self.places[points.pose, joint]
         still: Floats = quaternion.rotate(back, ways) + self.rest[joint]
@@ -107,9 +107,7 @@ def flexed(body: BodyMesh, poses: Poses, corners: Ints, shares: Floats, carriers
         ways = body.places[vertices] - rest[joints]
         carried = quaternion.rotate(turns[pose[:, None], joints], ways) + places[pose[:, None], joints]
         total += shares[:, corner, None] * np.einsum("sk,ski->si", body.weights[vertices], carried)
-    back = quaternion.conjugate(turns[pose, carriers])
-    seen: Floats = quaternion.rotate(back, total - places[pose, carriers]) + rest[carriers]
-    return seen
+    return poses.seen(carriers, PosedPoints(total, pose))
 
 
 def in_turn(count: int, poses: Poses) -> Ints:
