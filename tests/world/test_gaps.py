@@ -9,7 +9,8 @@ from elbowroom.body.humanoid import Humanoid
 from elbowroom.planning.navigation.navigator import Navigator
 from elbowroom.planning.navigation.way import NoWayError
 from elbowroom.world.ground.gaps import WIDEST
-from elbowroom.world.ground.ground import Ground, Sole, height_along, sole_on
+from elbowroom.world.ground.ground import Ground, height_along
+from elbowroom.world.ground.sole import Sole, sole_on
 from elbowroom.world.scene import Scene
 from stairs import BEFORE, ON_FLOOR, TREADS, spiral_stair, tread_top
 

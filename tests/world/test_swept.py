@@ -4,7 +4,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.jit import exact_kernel
-from elbowroom.world.ground.ground import Ground, Sole
+from elbowroom.world.ground.ground import Ground
+from elbowroom.world.ground.sole import Sole
 from elbowroom.world.ground.swept import Spot, set_highest_under
 from elbowroom.world.scene import Scene
 

@@ -21,7 +21,8 @@ from elbowroom.body.pose.kinematics import BodyModel, CapsuleSet, leg_capsules, 
 from elbowroom.body.root import HEIGHT, RISES, ROOT_STATE
 from elbowroom.by_reference import by_reference
 from elbowroom.jit import brief_exact_kernel, exact_kernel, helper, inner_exact_kernel
-from elbowroom.world.ground.ground import PLAIN, Ground, Sole, height_along, level_about, sole_on, under_body
+from elbowroom.world.ground.ground import PLAIN, Ground, height_along, level_about, under_body
+from elbowroom.world.ground.sole import Sole, sole_on
 from elbowroom.world.ground.swept import set_highest_under
 from elbowroom.world.obstacles.obstacles import EVERY_HEIGHT, Span
 

@@ -1,4 +1,4 @@
-"""The ground under feet, for kernels: how high it is at a place, and how a sole lies on it.
+"""The ground under feet, for kernels: how high it is at a place, and about a place.
 
 Ground is the level plane at height 0 and every surface that is level enough to stand on, whatever it belongs to: floors
 above one another, treads, ramps, sills, kerbs. So a place has many heights, and each question says near which height it
@@ -30,11 +30,9 @@ SPANS = 9  # a column of triangles
 FIRM, SPANNED = 0.5, 1.5  # of what `SPANS` tells: ground alone, or gaps that are spanned too
 _NEXT = np.uint64(1)
 _NONE = -math.inf
-_GRADE = math.tan(STEEPEST)
 RELIEF = 1e-3  # metres: what lies no lower than this under the highest ground about it is level
 _ABOUT = 0.1  # metres by which a body's height may differ from the ground about it
 _INSIDE = 1e-9  # m², by which a place may lie outside of a triangle
-_ALONG, _ACROSS = 13, 3  # places of a sole that are looked at
 _EASED, _AROUND, _RINGS = 0.36, 10, 4  # metres about a body whose ground counts for its height; places there
 _ANGLES = 2.0 * math.pi * (np.arange(_AROUND) + 0.5) / _AROUND
 _ASIDE, _ONWARD = np.sin(_ANGLES), np.cos(_ANGLES)  # (_AROUND,) directions in which they lie
@@ -43,7 +41,6 @@ EVEN_STAIR = 0.65  # metres that a stair of the usual kind rises in a metre, at 
 _LIFTED, _MOST_LIFTED = 0.3, 0.12  # metres that a body is carried higher where it is steeper by one in one; at most
 _TREADS = 0.04  # metres that ground is uneven by where it is all treads
 _CARRIED = 0.24  # of a step that a body is above the ground at its place, in the middle of what it may be
-_UNEVEN = 0.02  # metres: a sole that would have more air under it lies level
 
 
 @by_reference
@@ -64,14 +61,6 @@ class Ground(NamedTuple):
     beyond: bool  # whether it is, outside of the grid
     even_starts: Longs  # (cells + 1,) where the even heights of each cell begin
     evens: Floats  # (E,) tops of ground that is level all over a cell, with nothing up to a step above
-
-
-class Sole(NamedTuple):
-    """The rectangle that a flat foot stands on, from the ankle; metres."""
-
-    back: float
-    ahead: float
-    aside: float
 
 
 PLAIN = Ground(
@@ -210,43 +199,6 @@ def height_along(ground: Ground, start: tuple[float, float, float], x: float, z:
         if found > _NONE:
             near = found
     return found
-
-
-@exact_kernel
-def sole_on(ground: Ground, sole: Sole, place: tuple[float, float, float], yaw: float) -> tuple[float, float]:
-    """How a foot stands whose ankle is over a place (x, height, z), turned by `yaw`: it lies on the highest ground.
-
-    From the ankle that is followed step by step to toes and heel, so a sole may lie over several treads, and over gaps.
-    Returns the height of the sole under the ankle, minus infinity where there is no ground, and its pitch in radians,
-    positive with the toes down: on a slope it lies on it, on what is uneven it is level.
-    """
-    if ground.plain:
-        return 0.0, 0.0
-    sine, cosine, highest = math.sin(yaw), math.cos(yaw), np.empty(_ALONG)
-    length, ankle = sole.back + sole.ahead, int(sole.back / (sole.back + sole.ahead) * (_ALONG - 1) + 0.5)
-    near = place[1]
-    for k in range(_ALONG):
-        i = ankle + k if ankle + k < _ALONG else _ALONG - 1 - k  # from the ankle to the toes, then to the heel
-        near = place[1] if i == ankle - 1 else near
-        ahead, highest[i] = length * i / (_ALONG - 1) - sole.back, _NONE
-        for j in range(_ACROSS):
-            aside = sole.aside * (2.0 * j / (_ACROSS - 1) - 1.0)
-            x, z = place[0] + ahead * sine + aside * cosine, place[2] + ahead * cosine - aside * sine
-            highest[i] = max(highest[i], firm_at(ground, x, z, near))
-        near = highest[i] if highest[i] > _NONE else near
-    grade = 0.0
-    if min(highest[0], highest[-1]) > _NONE:
-        grade = (highest[-1] - highest[0]) / length
-    level, tilted = _NONE, _NONE
-    for i in range(_ALONG):
-        level = max(level, highest[i])
-        tilted = max(tilted, highest[i] - grade * (length * i / (_ALONG - 1) - sole.back))
-    air = 0.0
-    for i in range(_ALONG):
-        air = max(air, tilted + grade * (length * i / (_ALONG - 1) - sole.back) - highest[i])
-    if abs(grade) > _GRADE or air > _UNEVEN:
-        return level, 0.0
-    return tilted, -math.atan(grade)
 
 
 @brief_exact_kernel

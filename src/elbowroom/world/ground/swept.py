@@ -10,7 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.jit import helper, inner_exact_kernel
-from elbowroom.world.ground.ground import Ground, Sole, firm_at
+from elbowroom.world.ground.ground import Ground, firm_at
+from elbowroom.world.ground.sole import Sole
 
 Floats = NDArray[np.float64]
 Spot = tuple[float, float, float]  # x, z and yaw of a foot's ankle

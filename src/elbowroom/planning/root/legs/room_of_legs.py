@@ -12,7 +12,7 @@ from elbowroom.jit import exact_kernel, helper
 from elbowroom.planning.model.footing import floors_under, levelled, lift_feet, set_rises
 from elbowroom.planning.root.legs.hull import Ground
 from elbowroom.planning.root.legs.neighbours import Neighbours
-from elbowroom.world.ground.ground import Sole
+from elbowroom.world.ground.sole import Sole
 from elbowroom.world.obstacles.clearance import lower_clearance
 from elbowroom.world.obstacles.rows import room_for, shifted_into
 
