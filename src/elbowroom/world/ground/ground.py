@@ -10,7 +10,7 @@ there.
 """
 
 import math
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -104,6 +104,19 @@ def heights_at(ground: Ground, x: float, z: float, out: Floats) -> int:
 
 
 @helper
+def first_within(bottoms: Floats32, first: Any, last: Any, high: float) -> Any:
+    """The first of a cell's parts, those from `first` on and before `last`, that begins no higher than `high`."""
+    m, above = first, last
+    while m < above:
+        middle = (m + above) >> _NEXT
+        if bottoms[middle] > high:
+            m = middle + _NEXT
+        else:
+            above = middle
+    return m
+
+
+@helper
 def _highest(ground: Ground, x: float, z: float, near: float, kinds: float) -> float:
     """The highest ground at a place that is no more than a step from the height `near`; minus infinity without any.
 
@@ -115,13 +128,7 @@ def _highest(ground: Ground, x: float, z: float, near: float, kinds: float) -> f
     there, low, high = ground.level[cell] if inside else ground.beyond, near - ground.step, near + ground.step
     best = 0.0 if ground.plain or (there and low <= 0.0 <= high) else _NONE
     m, last = np.uint64(ground.starts[cell]), np.uint64(ground.starts[cell + _NEXT] if inside else ground.starts[cell])
-    above = last
-    while m < above:
-        middle = (m + above) >> _NEXT
-        if ground.bottoms[middle] > high:
-            m = middle + _NEXT
-        else:
-            above = middle
+    m = first_within(ground.bottoms, m, last, high)
     while m < last and ground.tops[m] > max(best, low - _INSIDE):
         t = np.uint64(ground.members[m])
         m += _NEXT

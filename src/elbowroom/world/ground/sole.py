@@ -12,14 +12,17 @@ from numpy.typing import NDArray
 
 from elbowroom.jit import exact_kernel, helper, plain
 from elbowroom.world.clipping import clipped
-from elbowroom.world.ground.ground import FIRM, SPANS, STEEPEST, Ground, firm_at
+from elbowroom.world.ground.ground import FIRM, SPANS, STEEPEST, Ground, firm_at, first_within
 
 Floats = NDArray[np.float64]
+Longs = NDArray[np.int64]
 
 _NONE = -math.inf
 _GRADE = math.tan(STEEPEST)
 _ALONG, _ACROSS = 13, 3  # places of a sole that are looked at
 _UNEVEN = 0.02  # metres: a sole that would have more air under it lies level
+_NEXT = np.uint64(1)
+_TRIED = 16  # triangles that are known to have been looked at: they lie in many cells
 _SLIGHT = 2e-4  # metres: what rises no higher above those places is not looked for
 _AHEAD, _HEIGHT, _ASIDE, _CORNERS = plain(0), plain(1), plain(2), plain(3)  # axes of a sole; what a triangle has
 
@@ -59,14 +62,32 @@ def _cells_under(ground: Ground, at: _Spot) -> tuple[int, int, int, int]:
 
 
 @helper
-def _set_seen(triangle: Floats, at: _Spot, out: Floats) -> None:
-    """Write a triangle's corners as a sole sees them: how far ahead and aside of the ankle, and how high."""
+def _may_rise(triangles: Floats, t: int, at: _Spot, grade: float, best: float, seen: Floats) -> bool:
+    """Whether a triangle may lie under a sole and above it; its corners are written as they are `seen` (3, 3) by it.
+
+    That is how far ahead and aside of the ankle they are, and how high.
+    """
+    rises, back, ahead, left, right = _NONE, math.inf, _NONE, math.inf, _NONE
     for i, c in enumerate((0, 3, 5)):
-        along, across = triangle[c] - triangle[0], triangle[c + 1] - triangle[1]
-        x, z = triangle[c] - at.x, triangle[c + 1] - at.z
-        out[i, _AHEAD] = x * at.sine + z * at.cosine
-        out[i, _HEIGHT] = triangle[2] + triangle[7] * along + triangle[8] * across
-        out[i, _ASIDE] = x * at.cosine - z * at.sine
+        x, z = triangles[t, c], triangles[t, c + 1]
+        height = triangles[t, 2] + triangles[t, 7] * (x - triangles[t, 0]) + triangles[t, 8] * (z - triangles[t, 1])
+        along = (x - at.x) * at.sine + (z - at.z) * at.cosine
+        aside = (x - at.x) * at.cosine - (z - at.z) * at.sine
+        seen[i, _AHEAD], seen[i, _HEIGHT], seen[i, _ASIDE] = along, height, aside
+        back, ahead, left, right = min(back, along), max(ahead, along), min(left, aside), max(right, aside)
+        rises = max(rises, height - grade * along)
+    sole = at.sole
+    beside = back > sole.ahead or ahead < -sole.back or left > sole.aside or right < -sole.aside
+    return rises > best + _SLIGHT and not beside
+
+
+@helper
+def _is_among(numbers: Longs, count: int, number: int) -> bool:
+    """Whether a number is one of the first `count`."""
+    found = False
+    for i in range(count):
+        found |= numbers[i] == number
+    return found
 
 
 @helper
@@ -79,6 +100,17 @@ def _part_under(sole: Sole, piece: Floats, other: Floats) -> int:
 
 
 @helper
+def _raised(sole: Sole, piece: Floats, count: int, nears: Floats, step: float, grade: float, best: float) -> float:
+    """`best`, or how high a sole lies on so many corners of a `piece`, those that are within a `step` of `nears`."""
+    per = (_ALONG - 1) / (sole.back + sole.ahead)
+    for i in range(count):
+        near = nears[int((piece[i, _AHEAD] + sole.back) * per + 0.5)]
+        if abs(piece[i, _HEIGHT] - near) <= step:
+            best = max(best, piece[i, _HEIGHT] - grade * piece[i, _AHEAD])
+    return best
+
+
+@helper
 def _highest_under(ground: Ground, at: _Spot, nears: Floats, grade: float, least: float) -> float:
     """How high a sole that rises by `grade` ahead lies under its ankle, where no ground that it is over is above it.
 
@@ -86,23 +118,23 @@ def _highest_under(ground: Ground, at: _Spot, nears: Floats, grade: float, least
     """
     sole, best, piece, other = at.sole, least, np.empty((8, 3)), np.empty((8, 3))
     begin_x, end_x, begin_z, end_z = _cells_under(ground, at)
-    lower, per = abs(grade) * max(sole.back, sole.ahead), (_ALONG - 1) / (sole.back + sole.ahead)
+    lower = abs(grade) * max(sole.back, sole.ahead)
+    high, tried, count = nears.max() + ground.step, np.empty(_TRIED, np.int64), 0
     for ix in range(begin_x, end_x + 1):
         for iz in range(begin_z, end_z + 1):
-            m, last = ground.starts[ix * ground.shape[1] + iz], ground.starts[ix * ground.shape[1] + iz + 1]
+            cell = np.uint64(ix * ground.shape[1] + iz)
+            m, last = np.uint64(ground.starts[cell]), np.uint64(ground.starts[cell + _NEXT])
+            m = first_within(ground.bottoms, m, last, high)
             while m < last and ground.tops[m] > best - lower + _SLIGHT:
                 t = ground.members[m]
-                m += 1
-                if ground.triangles[t, SPANS] >= FIRM:
+                m += _NEXT
+                if ground.triangles[t, SPANS] >= FIRM or _is_among(tried, count, t):
                     continue
-                _set_seen(ground.triangles[t], at, piece)
-                rises = _NONE
-                for i in range(_CORNERS):
-                    rises = max(rises, piece[i, _HEIGHT] - grade * piece[i, _AHEAD])
-                for i in range(_part_under(sole, piece, other) if rises > best + _SLIGHT else 0):
-                    near = nears[int((piece[i, _AHEAD] + sole.back) * per + 0.5)]
-                    if abs(piece[i, _HEIGHT] - near) <= ground.step:
-                        best = max(best, piece[i, _HEIGHT] - grade * piece[i, _AHEAD])
+                if _may_rise(ground.triangles, t, at, grade, best, piece):
+                    if count < _TRIED:
+                        tried[count] = t
+                        count += 1
+                    best = _raised(sole, piece, _part_under(sole, piece, other), nears, ground.step, grade, best)
     return best
 
 
