@@ -21,6 +21,7 @@ from elbowroom.planning.narrow.places import NarrowPlaces
 from elbowroom.planning.root.line.line import new_line
 from elbowroom.planning.root.path import RootPath
 from elbowroom.planning.root.planner import RootPlanner
+from elbowroom.planning.root.query import Asked
 from elbowroom.planning.root.settings import RootMotionSettings
 from elbowroom.world.scene import Scene
 
@@ -166,13 +167,13 @@ def test_the_narrower_the_slower_and_wide_places_are_not_slow() -> None:
 
 def test_slowing_down_is_the_same_from_plan_to_plan_and_costs_nothing() -> None:
     planner, command = RootPlanner(HUMANOID, gap(1.12 * WIDTH)), Command(forward=1.0)
-    plan = planner.plan(RootState(forward=1.1), command, 16, T)
+    plan = planner.plan(Asked(RootState(forward=1.1), command, 16, T))
     speeds = plan.path.states[:, 3]
     assert speeds.min() < 0.95
     assert speeds[-1] > speeds.min()
     assert plan.lost == pytest.approx(0.0, abs=1e-6)
     for k in range(1, 14):
-        later = planner.plan(RootState(*plan.path.states[k].tolist()), command, 16 - k, T, k * T)
+        later = planner.plan(Asked(RootState(*plan.path.states[k].tolist()), command, 16 - k, T, k * T))
         assert np.abs(later.path.states - plan.path.states[k:]).max() < 1e-9
         assert later.lost == pytest.approx(0.0, abs=0.01)
 
@@ -181,7 +182,7 @@ def crossed_at(place: Scene) -> float:
     """How far to the left somebody is who walks on and comes to what stands `FAR` metres ahead."""
     planner, start = RootPlanner(HUMANOID, place), RootState()
     for step in range(40):
-        path = planner.plan(start, Command(forward=1.0), 16, T, 2.0 * T * step).path
+        path = planner.plan(Asked(start, Command(forward=1.0), 16, T, 2.0 * T * step)).path
         if path.states[2, 1] > FAR:
             return float(np.interp(FAR, path.states[:, 1], path.states[:, 0]))
         start = RootState.of(path.states[2])
@@ -208,6 +209,6 @@ def test_where_it_is_broad_enough_or_far_to_go_round_one_walks_through(ratio: fl
 def test_who_finds_no_way_for_the_upper_body_beside_a_gap_is_offered_the_way_through() -> None:
     planner = RootPlanner(HUMANOID, between(1.1, 0.2))
     start = RootState(0.0, 1.2, 0.0, 1.1)
-    plans = list(planner.candidates(start, Command(forward=1.0), 16, T))
+    plans = list(planner.candidates(Asked(start, Command(forward=1.0), 16, T)))
     assert plans[0].beside
     assert any(not plan.beside and np.abs(plan.path.states[:, 0]).max() < 0.03 for plan in plans[1:])

@@ -16,6 +16,7 @@ from elbowroom.planning.root.legs.hull import to_check
 from elbowroom.planning.root.legs.lower_body import LowerBody
 from elbowroom.planning.root.motion import MotionBounds, dense_states, steer
 from elbowroom.planning.root.planner import RootPlanner
+from elbowroom.planning.root.query import Asked
 from elbowroom.world.ground.making import ground_of
 from elbowroom.world.obstacles.clearance import clearance
 from elbowroom.world.obstacles.obstacles import Obstacles
@@ -82,7 +83,7 @@ def test_ways_are_planned_there_as_on_the_plane(name: str) -> None:
     for ahead in (0.0, 0.8, 1.5):
         start = scene.start._replace(z=scene.start.z + ahead, forward=1.1)
         first, second = (
-            list(planner.candidates(here, Command(forward=1.0), 12, 0.15))
+            list(planner.candidates(Asked(here, Command(forward=1.0), 12, 0.15)))
             for planner, here in zip(planners, (start, start._replace(height=HIGH)), strict=True)
         )
         assert [plan.kind for plan in first] == [plan.kind for plan in second]

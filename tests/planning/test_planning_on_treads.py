@@ -23,6 +23,7 @@ from elbowroom.planning.root.legs.lower_body import LowerBody
 from elbowroom.planning.root.path import RootPath
 from elbowroom.planning.root.plan import RootPlanKind
 from elbowroom.planning.root.planner import RootPlanner
+from elbowroom.planning.root.query import Asked
 from elbowroom.world.ground.ground import eased_height, heights_along
 from elbowroom.world.scene import Scene
 from stairs import RISE, TURN, spiral_stair, tread_top
@@ -117,5 +118,5 @@ def test_wherever_and_in_whatever_phase_one_comes_to_an_even_stair_one_walks_on(
         height = eased_height(scene.ground, (0.0, near, place), 0.0, place)
         start = RootState(0.0, place, heading, speed, phase=phase, height=height)
         planner.reset()
-        plan = planner.plan(start, Command(forward=1.0), 16, 0.15)
+        plan = planner.plan(Asked(start, Command(forward=1.0), 16, 0.15))
         assert plan.kind is RootPlanKind.STRAIGHT, start

@@ -16,6 +16,7 @@ from elbowroom.planning.narrow.pace import slow_under
 from elbowroom.planning.narrow.places import NarrowPlaces
 from elbowroom.planning.root.line.line import new_line
 from elbowroom.planning.root.planner import RootPlanner
+from elbowroom.planning.root.query import Asked
 from elbowroom.planning.root.settings import RootMotionSettings
 from elbowroom.world.scene import Scene
 
@@ -85,13 +86,13 @@ def test_where_nobody_has_to_duck_nobody_is_slower(place: Scene) -> None:
 @pytest.mark.parametrize("under", [1.15, 1.5])
 def test_slowing_down_is_the_same_from_plan_to_plan_and_costs_nothing(under: float) -> None:
     planner, command = RootPlanner(HUMANOID, beam(under)), Command(forward=1.0)
-    plan = planner.plan(RootState(forward=1.1), command, 20, T)
+    plan = planner.plan(Asked(RootState(forward=1.1), command, 20, T))
     speeds = plan.path.states[:, 3]
     assert speeds.min() < 1.1 * slowest(beam(under)) + 0.05
     assert speeds[-1] > speeds.min() + 0.05
     assert plan.lost == pytest.approx(0.0, abs=1e-6)
     for k in range(1, 16):
-        later = planner.plan(RootState(*plan.path.states[k].tolist()), command, 20 - k, T, k * T)
+        later = planner.plan(Asked(RootState(*plan.path.states[k].tolist()), command, 20 - k, T, k * T))
         assert np.abs(later.path.states - plan.path.states[k:]).max() < 1e-9
 
 
@@ -99,7 +100,7 @@ def test_a_way_with_corners_is_slower_there_too() -> None:
     way = ((0.0, 0.0), (0.0, 4.0), (2.0, 4.0))
     command = Command(forward=1.0, direction=0.0, way=way)
     slow, free = (
-        RootPlanner(HUMANOID, place).plan(RootState(forward=1.1), command, 20, T).path.states
+        RootPlanner(HUMANOID, place).plan(Asked(RootState(forward=1.1), command, 20, T)).path.states
         for place in (beam(1.2), scene())
     )
     assert slow[:, 3].min() < 0.8

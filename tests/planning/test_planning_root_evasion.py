@@ -19,6 +19,7 @@ from elbowroom.planning.root.line.line import new_line
 from elbowroom.planning.root.motion import MotionBounds
 from elbowroom.planning.root.plan import RootPlan, RootPlanKind
 from elbowroom.planning.root.planner import RootPlanner
+from elbowroom.planning.root.query import Asked
 from elbowroom.planning.root.settings import RootMotionSettings
 from elbowroom.world.obstacles.clearance import clearance
 from elbowroom.world.obstacles.shapes import Box
@@ -153,7 +154,7 @@ def test_sideways_one_is_slower() -> None:
 
 
 def candidates(scene: Scene, start: RootState = WALKING, command: Command = FORWARD) -> list[RootPlan]:
-    return list(RootPlanner(AVATAR, scene).candidates(start, command, 16, 0.15, 2.0, (1.0, 0.6, 0.35)))
+    return list(RootPlanner(AVATAR, scene).candidates(Asked(start, command, 16, 0.15, 2.0), (1.0, 0.6, 0.35)))
 
 
 def test_where_nothing_is_lost_the_path_as_commanded_comes_first() -> None:
@@ -180,13 +181,13 @@ def test_who_stands_or_turns_by_hand_is_not_led_aside(command: Command) -> None:
 
 def test_who_lets_go_while_turned_still_means_the_way_he_went() -> None:
     planner, start = RootPlanner(AVATAR, Scene.load("doorway")), RootState(z=0.8, forward=1.1)
-    first = next(iter(planner.candidates(start, FORWARD, 20, 0.15)))
+    first = next(iter(planner.candidates(Asked(start, FORWARD, 20, 0.15))))
     turns = np.abs(first.path.states[:, 2]) > math.radians(40.0)
     assert turns.any()
     turned = RootState(*first.path.states[np.argmax(turns)].tolist())
-    stop = next(iter(planner.candidates(turned, Command(), 16, 0.15)))
+    stop = next(iter(planner.candidates(Asked(turned, Command(), 16, 0.15))))
     standing = RootState(*stop.path.states[-1].tolist())
-    on = next(iter(planner.candidates(standing, FORWARD, 16, 0.15)))
+    on = next(iter(planner.candidates(Asked(standing, FORWARD, 16, 0.15))))
     assert on.path.states[-1, 1] > standing.z + 0.4
 
 
@@ -210,7 +211,7 @@ def test_who_goes_past_with_one_shoulder_first_does_not_change_to_the_other(seed
     firsts = []
     for i in range(20):
         planner.others = half_of_a_corridor(-0.01 + rng.uniform(-0.006, 0.006), 1.4 - 0.02 * i)
-        found = planner.candidates(state, Command(forward=0.62), 16, 0.15, 0.15 * i, (0.6, 0.35, 0.2))
+        found = planner.candidates(Asked(state, Command(forward=0.62), 16, 0.15, 0.15 * i), (0.6, 0.35, 0.2))
         taken = next(plan for plan in found if plan.kind is RootPlanKind.EVASION)
         planner.follow(taken)
         firsts.append(farthest_turn(taken))
@@ -225,7 +226,7 @@ def test_who_steers_through_a_gap_keeps_to_the_shoulder_that_goes_first(seed: in
     planner, rng, state, firsts = RootPlanner(AVATAR, gap(0.4)), np.random.default_rng(seed), WALKING, []
     for i in range(18):
         hand = Command(forward=1.0, direction=rng.uniform(-0.07, 0.07))
-        found = planner.candidates(state, hand, 16, 0.15, 0.15 * i, (0.6, 0.35, 0.2))
+        found = planner.candidates(Asked(state, hand, 16, 0.15, 0.15 * i), (0.6, 0.35, 0.2))
         taken = next((plan for plan in found if plan.kind is RootPlanKind.EVASION), None)
         if taken is None:
             break

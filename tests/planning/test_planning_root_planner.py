@@ -15,6 +15,7 @@ from elbowroom.planning.command import Command
 from elbowroom.planning.root.path import RootPath
 from elbowroom.planning.root.plan import Patience, RootPlan, RootPlanKind
 from elbowroom.planning.root.planner import RootPlanner
+from elbowroom.planning.root.query import Asked
 from elbowroom.planning.root.settings import RootMotionSettings
 from elbowroom.world.obstacles.clearance import clearance
 from elbowroom.world.scene import Scene
@@ -60,7 +61,7 @@ def walk(
     planner, state = RootPlanner(BODY, scene), start or RootState()
     passed, plans = [state.as_array()], []
     for i in range(steps):
-        plan = planner.plan(state, command(i) if callable(command) else command, HORIZON, INTERVAL)
+        plan = planner.plan(Asked(state, command(i) if callable(command) else command, HORIZON, INTERVAL))
         assert least_clearance(plan.path, scene) > 0.0
         state = RootState(*plan.path.states[1].tolist())
         passed.append(plan.path.states[1])
@@ -83,7 +84,7 @@ def test_free_space_is_crossed_straight_at_walking_speed() -> None:
 
 def test_a_path_starts_exactly_in_the_state_given() -> None:
     start = RootState(0.3, -0.2, 1.0, 0.7, 0.1, 0.4, 3.25)
-    plan = RootPlanner(BODY, scene_of()).plan(start, FORWARD, 4, 0.25, start_time=7.5)
+    plan = RootPlanner(BODY, scene_of()).plan(Asked(start, FORWARD, 4, 0.25, 7.5))
     assert RootState(*plan.path.states[0]) == start
     assert plan.path.start_time == 7.5
     assert plan.path.states.shape == (5, ROOT_STATE)
@@ -96,7 +97,7 @@ def test_who_is_led_round_a_pillar_and_pulls_back_to_the_line_is_led_on(x: float
     sides = set[int]()
     for _ in range(25):
         back = max(-0.5, min(0.5, -1.5 * state.x))
-        plan = planner.plan(state, Command(forward=1.0, direction=back), HORIZON, INTERVAL)
+        plan = planner.plan(Asked(state, Command(forward=1.0, direction=back), HORIZON, INTERVAL))
         state = RootState(*plan.path.states[1].tolist())
         sides |= {round(math.copysign(1.0, state.x))} if abs(state.x) > 0.2 else set()
     assert state.z > 3.2
@@ -107,11 +108,11 @@ def test_who_is_led_round_a_pillar_and_pulls_back_to_the_line_is_led_on(x: float
 def test_who_is_led_round_a_pillar_may_go_elsewhere(direction: float) -> None:
     planner, state = RootPlanner(BODY, scene_of(([-0.3, 0.6, 2.5], [1.2, 1.2, 0.5], 0.0))), RootState()
     for _ in range(8):
-        plan = planner.plan(state, Command(forward=1.0, direction=0.0), HORIZON, INTERVAL)
+        plan = planner.plan(Asked(state, Command(forward=1.0, direction=0.0), HORIZON, INTERVAL))
         state = RootState(*plan.path.states[1].tolist())
     assert plan.kind is RootPlanKind.DETOUR
     assert state.x > 0.2  # to the left of the line
-    planner.plan(state, Command(forward=1.0, direction=direction), HORIZON, INTERVAL)
+    planner.plan(Asked(state, Command(forward=1.0, direction=direction), HORIZON, INTERVAL))
     assert planner.memory.line is not None
     assert math.remainder(planner.memory.line.heading - direction, math.tau) == pytest.approx(0.0)
 
@@ -237,7 +238,7 @@ def test_every_path_is_free_whatever_the_scene_and_the_user_do(seed: int) -> Non
     planner = RootPlanner(BODY, scene)
     for _ in range(25):
         command = random_command(rng) if rng.random() < 0.2 else command
-        plan = planner.plan(state, command, horizon, interval)
+        plan = planner.plan(Asked(state, command, horizon, interval))
         assert least_clearance(plan.path, scene) >= 0.0
         change = np.diff(world_velocities(plan.path.states), axis=0)
         assert np.max(np.linalg.norm(change, axis=1)) <= MOTION.braking * interval * 1.001
@@ -255,18 +256,18 @@ def test_the_same_past_gives_the_same_path_bit_for_bit() -> None:
 
 def test_reset_forgets_the_line_of_travel() -> None:
     planner = RootPlanner(BODY, scene_of())
-    planner.plan(RootState(), FORWARD, HORIZON, INTERVAL)
+    planner.plan(Asked(RootState(), FORWARD, HORIZON, INTERVAL))
     beside = RootState(x=0.3)
-    back = planner.plan(beside, FORWARD, HORIZON, INTERVAL).path.states[-1, 0]
+    back = planner.plan(Asked(beside, FORWARD, HORIZON, INTERVAL)).path.states[-1, 0]
     planner.reset()
-    fresh = planner.plan(beside, FORWARD, HORIZON, INTERVAL).path.states[-1, 0]
+    fresh = planner.plan(Asked(beside, FORWARD, HORIZON, INTERVAL)).path.states[-1, 0]
     assert back < 0.25
     assert fresh == pytest.approx(0.3, abs=1e-9)
 
 
 def test_a_body_that_is_stuck_in_an_obstacle_stands_still() -> None:
     scene = scene_of(([0.0, 0.5, 2.0], [1.0, 1.0, 1.0], 0.0))
-    plan = RootPlanner(BODY, scene).plan(RootState(z=2.0, forward=1.0), FORWARD, HORIZON, INTERVAL)
+    plan = RootPlanner(BODY, scene).plan(Asked(RootState(z=2.0, forward=1.0), FORWARD, HORIZON, INTERVAL))
     assert plan.kind is RootPlanKind.STOPPED
     np.testing.assert_array_equal(plan.path.states[:, :3], np.tile([0.0, 2.0, 0.0], (HORIZON + 1, 1)))
 
@@ -277,7 +278,7 @@ def test_a_small_and_a_tall_body_find_their_own_way() -> None:
         body = proportional_humanoid(height)
         planner, state = RootPlanner(body, gap), RootState()
         for _ in range(30):
-            plan = planner.plan(state, FORWARD, HORIZON, INTERVAL)
+            plan = planner.plan(Asked(state, FORWARD, HORIZON, INTERVAL))
             assert least_clearance(plan.path, gap, body) > 0.0
             state = RootState(*plan.path.states[1].tolist())
         assert (state.z > 3.0) == passes
@@ -285,8 +286,8 @@ def test_a_small_and_a_tall_body_find_their_own_way() -> None:
 
 def test_who_has_no_patience_is_offered_in_several_plans_what_the_patient_are_in_one() -> None:
     """One stands before a wall: ways out are looked for from eighteen places, and there is none."""
-    before_wall, asked = scene_of(wall(2.0, -3.0, 3.0)), (RootState(z=1.6), FORWARD, 12, 0.15)
-    patient = [plan.kind for plan in RootPlanner(BODY, before_wall).candidates(*asked)]
+    before_wall, asked = scene_of(wall(2.0, -3.0, 3.0)), Asked(RootState(z=1.6), FORWARD, 12, 0.15)
+    patient = [plan.kind for plan in RootPlanner(BODY, before_wall).candidates(asked)]
     looked_at: list[int] = []
 
     def enough(checks: int) -> bool:
@@ -295,7 +296,7 @@ def test_who_has_no_patience_is_offered_in_several_plans_what_the_patient_are_in
 
     planner, plans, offered = RootPlanner(BODY, before_wall), 0, list[RootPlanKind]()
     while len(offered) < len(patient):
-        offered = [plan.kind for plan in planner.candidates(*asked, patience=Patience(enough=enough))]
+        offered = [plan.kind for plan in planner.candidates(asked, patience=Patience(enough=enough))]
         plans += 1
     assert offered == patient
     assert plans == 1 + len(looked_at) // 4 > 2

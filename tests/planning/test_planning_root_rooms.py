@@ -12,6 +12,7 @@ from elbowroom.planning.root.evasion.room import Floor, Grid, Room, free_distanc
 from elbowroom.planning.root.evasion.turned_body import TurnedBody
 from elbowroom.planning.root.line.line import TravelLine
 from elbowroom.planning.root.planner import RootPlanner
+from elbowroom.planning.root.query import Asked
 from elbowroom.world.obstacles.clearance import clearance
 from elbowroom.world.obstacles.free_map import CELL, FARTHEST, LEVELS
 from elbowroom.world.obstacles.layout import Spans
@@ -135,8 +136,8 @@ def test_who_knows_nothing_of_the_plans_before_finds_the_same_paths(name: str) -
     for i in range(14):
         fresh = RootPlanner(AVATAR, scene)
         fresh.memory = walking.memory
-        asked = state, Command(forward=1.0), 12, 0.15, 0.15 * i, (1.0, 0.6)
-        known, found = list(walking.candidates(*asked)), list(fresh.candidates(*asked))
+        asked = Asked(state, Command(forward=1.0), 12, 0.15, 0.15 * i)
+        known, found = (list(planner.candidates(asked, (1.0, 0.6))) for planner in (walking, fresh))
         assert [plan.kind for plan in known] == [plan.kind for plan in found]
         for one, other in zip(known, found, strict=True):
             np.testing.assert_array_equal(one.path.states, other.path.states)

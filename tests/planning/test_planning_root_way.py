@@ -13,6 +13,7 @@ from elbowroom.planning.root.line.way_ahead import leg_at, way_ahead
 from elbowroom.planning.root.path import RootPath
 from elbowroom.planning.root.plan import RootPlanKind
 from elbowroom.planning.root.planner import RootPlanner
+from elbowroom.planning.root.query import Asked
 from elbowroom.world.scene import Scene
 
 WAY = ((0.0, 0.0), (0.0, 3.0), (2.0, 3.0), (2.0, 9.0))
@@ -48,10 +49,10 @@ def test_a_path_along_a_way_goes_on_as_it_was_round_the_corner_and_stands_at_the
     """Planned again from any of its states, it is the same to the end of the first one."""
     planner, state = RootPlanner(Humanoid.default(), Scene.load("empty")), RootState()
     command, apart, walked = Command(forward=1.0, direction=0.0, way=WAY), 0.0, []
-    before = planner.plan(state, command, 18, INTERVAL).path.states
+    before = planner.plan(Asked(state, command, 18, INTERVAL)).path.states
     for number in range(1, 90):
         state = RootState(*before[1].tolist())
-        plan = planner.plan(state, command, 18, INTERVAL, number * INTERVAL)
+        plan = planner.plan(Asked(state, command, 18, INTERVAL, number * INTERVAL))
         apart = max(apart, float(np.abs(plan.path.states[:-1] - before[1:]).max()))
         assert plan.lost < planner.settings.untroubled
         before = plan.path.states
@@ -78,7 +79,7 @@ THROUGH = ((-1.3, 0.0), (-0.1, 0.0), (0.26, -0.18), (0.74, -0.72), (1.5, -0.66))
 
 def test_who_would_meet_a_corner_by_cutting_it_keeps_closer_to_the_way() -> None:
     start = RootState(-0.48, 0.01, 0.5 * math.pi, 0.66)
-    plan = RootPlanner(Humanoid.default(), aslant()).plan(start, Command(forward=1.0, way=THROUGH), 16, INTERVAL)
+    plan = RootPlanner(Humanoid.default(), aslant()).plan(Asked(start, Command(forward=1.0, way=THROUGH), 16, INTERVAL))
     assert plan.kind is RootPlanKind.STRAIGHT
     assert plan.path.states[-1, 0] > 1.0
 
@@ -87,15 +88,15 @@ def test_a_path_that_is_made_longer_goes_on_as_it_was() -> None:
     """Asked for anew, it would keep closer to the way from its first step on, for what has come into view."""
     planner, command = RootPlanner(Humanoid.default(), aslant()), Command(forward=1.0, way=THROUGH)
     start = RootState(-0.76, 0.0, 0.5 * math.pi, 0.66)
-    before = planner.plan(start, command, 3, INTERVAL)
+    before = planner.plan(Asked(start, command, 3, INTERVAL))
     state, left = RootState(*before.path.states[1].tolist()), RootPath(INTERVAL, INTERVAL, before.path.states[1:])
-    anew = planner.plan(state, command, 16, INTERVAL, INTERVAL)
-    longer = planner.prolonged(left, state, command, 16, INTERVAL)
+    anew = planner.plan(Asked(state, command, 16, INTERVAL, INTERVAL))
+    longer = planner.prolonged(left, Asked(state, command, 16, INTERVAL, left.start_time))
     assert longer.path.horizon == 16
     assert longer.path.start_time == INTERVAL
     assert np.array_equal(longer.path.states[:3], left.states)
     assert not np.allclose(anew.path.states[:3], left.states, atol=1e-3)
-    on = planner.plan(RootState(*left.states[-1].tolist()), command, 14, INTERVAL, 3 * INTERVAL)
+    on = planner.plan(Asked(RootState(*left.states[-1].tolist()), command, 14, INTERVAL, 3 * INTERVAL))
     assert np.array_equal(longer.path.states[2:], on.path.states)
 
 
@@ -106,5 +107,5 @@ def test_a_slower_walk_along_a_way_loses_what_it_is_slower_by() -> None:
         Command(forward=1.0, direction=0.0, way=WAY),
     )
     start = RootState(forward=1.1)
-    lost = [planner.plan(start, command, 16, INTERVAL, pace=pace).lost for pace in (1.0, 0.6, 0.35)]
+    lost = [planner.plan(Asked(start, command, 16, INTERVAL), pace=pace).lost for pace in (1.0, 0.6, 0.35)]
     assert lost == pytest.approx([0.0, 0.4 * 16 * INTERVAL, 0.65 * 16 * INTERVAL], abs=0.01)

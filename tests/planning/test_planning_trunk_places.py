@@ -15,6 +15,7 @@ from elbowroom.planning.paper.local_planner import LocalPlanner
 from elbowroom.planning.paper.trunk_places import FARTHEST
 from elbowroom.planning.root.plan import RootPlan, RootPlanKind
 from elbowroom.planning.root.planner import RootPlanner
+from elbowroom.planning.root.query import Asked
 from elbowroom.world.obstacles.clearance import clearance_of
 from elbowroom.world.obstacles.obstacles import Obstacles
 from elbowroom.world.scene import Scene
@@ -69,11 +70,11 @@ def planned(scene: Scene, z: float = 0.0) -> RootPlan:
     """The first root path of the paper's planner, straight on from a place on the way."""
     planner = RootPlanner(HUMANOID, scene, above=LocalPlanner(HUMANOID, scene).trunk)
     start = RootState(0.0, z, 0.0, 1.1, 0.0, 0.0, 0.0)
-    return planner.plan(start, Command(forward=1.0), 5, 0.15)
+    return planner.plan(Asked(start, Command(forward=1.0), 5, 0.15))
 
 
 def test_the_root_goes_round_a_cupboard_that_no_posture_gets_past() -> None:
-    heedless = RootPlanner(HUMANOID, CUPBOARD).plan(RootState(), Command(forward=1.0), 5, 0.15)
+    heedless = RootPlanner(HUMANOID, CUPBOARD).plan(Asked(RootState(), Command(forward=1.0), 5, 0.15))
     assert heedless.kind is RootPlanKind.STRAIGHT
     assert planned(CUPBOARD).kind is RootPlanKind.DETOUR
 
@@ -108,7 +109,7 @@ def test_the_papers_scenes_are_walked_straight_on(name: str) -> None:
             x=start.x + 0.3 * step * np.sin(start.heading), z=start.z + 0.3 * step * np.cos(start.heading), forward=1.1
         )
         planner.reset()
-        plan = planner.plan(state, Command(forward=1.0), 5, 0.15)
+        plan = planner.plan(Asked(state, Command(forward=1.0), 5, 0.15))
         assert plan.kind is not RootPlanKind.DETOUR
 
 

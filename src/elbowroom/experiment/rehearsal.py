@@ -51,6 +51,7 @@ from elbowroom.planning.root.line.line import new_line
 from elbowroom.planning.root.path import RootPath
 from elbowroom.planning.root.plan import RootPlan
 from elbowroom.planning.root.planner import RootPlanner
+from elbowroom.planning.root.query import Asked
 from elbowroom.planning.root.settings import RootMotionSettings
 from elbowroom.world.ground.ground import heights_along, heights_beside
 from elbowroom.world.obstacles.meshes.solids import inner_boxes
@@ -116,12 +117,12 @@ def rehearse_detour(humanoid: Humanoid) -> RootPlan:
     planner = RootPlanner(humanoid, _scene_with(*_LOW))
     start, horizon = RootState(0.0, 0.0, 0.0), 2 * _HORIZON
     for command in (Command(turn=1.0), Command()):
-        planner.plan(start, command, horizon, _INTERVAL)
-    list(planner.candidates(start, Command(forward=1.0), horizon, _INTERVAL))
+        planner.plan(Asked(start, command, horizon, _INTERVAL))
+    list(planner.candidates(Asked(start, Command(forward=1.0), horizon, _INTERVAL)))
     planner.others = Scene.load("traffic").obstacles.moving
-    list(planner.candidates(start, Command(forward=1.0), horizon, _INTERVAL))
+    list(planner.candidates(Asked(start, Command(forward=1.0), horizon, _INTERVAL)))
     planner.others = Moving()
-    return planner.plan(start, Command(forward=1.0), horizon, _INTERVAL)
+    return planner.plan(Asked(start, Command(forward=1.0), horizon, _INTERVAL))
 
 
 def rehearse_crouch(humanoid: Humanoid) -> None:

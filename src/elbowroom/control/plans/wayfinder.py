@@ -19,6 +19,7 @@ from elbowroom.planning.motion import Motion, MotionQuery, SupersededError
 from elbowroom.planning.result import LocalPlan, PlanStatus
 from elbowroom.planning.root.path import RootPath
 from elbowroom.planning.root.plan import RootPlan
+from elbowroom.planning.root.query import Asked
 
 Floats = NDArray[np.float64]
 
@@ -100,7 +101,7 @@ class Wayfinder:
         if question.assist and planner is not None:
             far = query._replace(horizon=max(query.horizon, question.reserve))
             return planner.plan_motion(self._planners.root, far)
-        root = self._planners.root.plan(query.root, query.command, query.horizon, query.interval, query.time)
+        root = self._planners.root.plan(Asked(query.root, query.command, query.horizon, query.interval, query.time))
         if not question.assist:
             return Motion(root, canned_walk(root.path, query.upper, self._motions))
         return Motion(root, self._planners.upper.plan(root.path, query.upper, self._rng))

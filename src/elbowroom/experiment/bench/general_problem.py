@@ -20,6 +20,7 @@ from elbowroom.planning.exact.settings import ExactSettings
 from elbowroom.planning.goal import natural_walk
 from elbowroom.planning.root.path import RootPath
 from elbowroom.planning.root.planner import RootPlanner
+from elbowroom.planning.root.query import Asked
 from elbowroom.world.obstacles.clearance import clearance
 from elbowroom.world.obstacles.obstacles import Obstacles
 from elbowroom.world.scene import Scene
@@ -100,7 +101,7 @@ def crossing_problem(humanoid: Humanoid, scene: Scene) -> CrossingProblem:
 def _straight_walk(humanoid: Humanoid, scene: Scene) -> RootPath:
     """Straight ahead until the finish, as if nothing stood in the way: set off, then walk on at the pace reached."""
     bare = replace(scene, obstacles=Obstacles())
-    path = RootPlanner(humanoid, bare).plan(scene.start, Command(forward=1.0), _SETTING_OFF, _INTERVAL).path
+    path = RootPlanner(humanoid, bare).plan(Asked(scene.start, Command(forward=1.0), _SETTING_OFF, _INTERVAL)).path
     states = list(path.states)
     last, before = states[-1], states[-2]
     while not scene.finished(RootState(*states[-1].tolist())):

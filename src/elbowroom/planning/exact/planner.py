@@ -28,6 +28,7 @@ from elbowroom.planning.result import LocalPlan
 from elbowroom.planning.root.path import RootPath
 from elbowroom.planning.root.plan import RootPlan, RootPlanKind
 from elbowroom.planning.root.planner import RootPlanner
+from elbowroom.planning.root.query import Asked
 from elbowroom.planning.stillness import SAME_TIME, is_still
 from elbowroom.world.scene import Scene
 
@@ -167,7 +168,8 @@ class ExactPlanner:
         """The same at a share of the speed."""
         near = self._horizon(root_planner, query)
         far = near + self._spare(query)
-        root = root_planner.prolonged(left.root.path, query.root, query.command, far, query.interval, pace)
+        asked = Asked(query.root, query.command, far, query.interval, left.root.path.start_time)
+        root = root_planner.prolonged(left.root.path, asked, pace)
         if not _goes_on(left.root, root, pace, root_planner.settings.untroubled):
             return None
         roots = root, root.along(root.path.until(near))

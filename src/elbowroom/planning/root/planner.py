@@ -108,49 +108,25 @@ class RootPlanner:
     def others(self, others: Moving) -> None:
         self._paths.others = others
 
-    def plan(
-        self,
-        start: RootState,
-        command: Command,
-        horizon: int,
-        interval: float,
-        start_time: float = 0.0,
-        pace: float = 1.0,
-    ) -> RootPlan:
-        """A path of `horizon` key intervals of `interval` seconds that starts exactly in the state `start`.
+    def plan(self, asked: Asked, pace: float = 1.0) -> RootPlan:
+        """The path as it is asked for, walked at the share `pace`, above 0 and up to 1, of the wanted speed."""
+        return self._maker.commanded(asked, pace)
 
-        It is walked at the share `pace`, above 0 and up to 1, of the speed that the command asks for.
-        """
-        return self._maker.commanded(Asked(start, command, horizon, interval, start_time), pace)
-
-    def stopped(
-        self, start: RootState, command: Command, horizon: int, interval: float, start_time: float = 0.0
-    ) -> RootPlan:
-        """To a stand, whatever is commanded; arguments as for `plan`. What it remembers stays as it is."""
-        plan = self._paths.stopped(Asked(start, command, horizon, interval, start_time))
+    def stopped(self, asked: Asked) -> RootPlan:
+        """To a stand, whatever is commanded. What it remembers stays as it is."""
+        plan = self._paths.stopped(asked)
         return plan.ended(plan.path)
 
-    def prolonged(
-        self, left: RootPath, start: RootState, command: Command, horizon: int, interval: float, pace: float = 1.0
-    ) -> RootPlan:
-        """What is `left` of a path from the start on, made longer to `horizon` key intervals, more than it has.
+    def prolonged(self, left: RootPath, asked: Asked, pace: float = 1.0) -> RootPlan:
+        """What is `left` of a path from the start on, made longer to the horizon that is asked for, beyond its own.
 
-        So who goes on does as was planned. The other arguments are as for `plan`, and so is what the new end is, which
-        is walked at the share `pace` of the wanted speed.
+        So who goes on does as was planned. The new end is what `plan` has, walked at the share `pace` of the wanted
+        speed.
         """
-        return self._maker.prolonged(Asked(start, command, horizon, interval, left.start_time), left, pace)
+        return self._maker.prolonged(asked, left, pace)
 
-    def candidates(
-        self,
-        start: RootState,
-        command: Command,
-        horizon: int,
-        interval: float,
-        start_time: float = 0.0,
-        paces: Sequence[float] = (),
-        patience: Patience = PATIENT,
-    ) -> Iterator[RootPlan]:
-        """Paths for an upper body to choose from, the one that costs least first; arguments as for `plan`.
+    def candidates(self, asked: Asked, paces: Sequence[float] = (), patience: Patience = PATIENT) -> Iterator[RootPlan]:
+        """Paths for an upper body to choose from, the one that costs least first.
 
         The path as commanded, evasions from it, and slower ones at the shares `paces` of the wanted speed. Evasions
         along the axis of a gap and those that lead far aside are thought of when the others have become dear, as far
@@ -158,43 +134,29 @@ class RootPlanner:
         Those that are not free of what moves come last (`RootPlan.free`). The last one that was given is the one that
         is being followed; whoever takes an earlier one says so (`follow`).
         """
-        asked, grids = Asked(start, command, horizon, interval, start_time), patience.grids
+        grids = patience.grids
         make = partial(self._maker.candidates, asked, paces, grids)
         return (offer.plan for offer in self._offers(f"{grids} grids", asked, make, patience))
 
-    def steps_aside(
-        self, start: RootState, command: Command, horizon: int, interval: float, start_time: float = 0.0
-    ) -> Iterator[RootPlan]:
-        """Short steps out of the way of what moves, free ones; arguments and duties as for `candidates`."""
-        asked = Asked(start, command, horizon, interval, start_time)
+    def steps_aside(self, asked: Asked) -> Iterator[RootPlan]:
+        """Short steps out of the way of what moves, free ones; duties as for `candidates`."""
         return (offer.plan for offer in self._offers("steps aside", asked, lambda: self._maker.steps_aside(asked)))
 
-    def kept(
-        self, path: RootPath, start: RootState, command: Command, horizon: int, interval: float, start_time: float = 0.0
-    ) -> int:
+    def kept(self, path: RootPath, asked: Asked) -> int:
         """The leading key intervals of a path from the start in which legs and pelvis are free of all, also of what
-        moves; the other arguments as for `plan`.
+        moves.
         """
-        return self._paths.kept(Asked(start, command, horizon, interval, start_time), path.states)
+        return self._paths.kept(asked, path.states)
 
-    def ways_out(
-        self,
-        start: RootState,
-        command: Command,
-        horizon: int,
-        interval: float,
-        start_time: float = 0.0,
-        patience: Patience = PATIENT,
-    ) -> Iterator[tuple[RootPlan, int]]:
-        """Paths that step to where the command leads on, the cheapest first; arguments and duties as for `candidates`.
+    def ways_out(self, asked: Asked, patience: Patience = PATIENT) -> Iterator[tuple[RootPlan, int]]:
+        """Paths that step to where the command leads on, the cheapest first; duties as for `candidates`.
 
         With each, how many key intervals the steps take. They are for who has asked for those, and can follow none.
         """
         line, before = self.memory.line, self.memory.way_out
-        if line is None or wanted_speed(command, self.settings.motion) < SLOW:
+        if line is None or wanted_speed(asked.command, self.settings.motion) < SLOW:
             return  # who is in no hurry stays
-        asked, out = Asked(start, command, horizon, interval, start_time), (line, None, before)
-        for offer in self._offers("ways out", asked, lambda: self._maker.out(asked, *out), patience):
+        for offer in self._offers("ways out", asked, lambda: self._maker.out(asked, line, None, before), patience):
             yield offer.plan, 0 if offer.memory.way_out is None else offer.memory.way_out.length
 
     def _offers(

@@ -34,11 +34,11 @@ _TURN_WORTH = 0.2  # metres that a radian of turning counts for when paths are c
 class Asked(NamedTuple):
     """What a path is asked for."""
 
-    start: RootState
+    start: RootState  # in which it begins exactly
     command: Command
     horizon: int  # key intervals
     interval: float  # seconds
-    start_time: float  # seconds
+    start_time: float = 0.0  # seconds
 
 
 class Answer(NamedTuple):

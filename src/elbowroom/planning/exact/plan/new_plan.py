@@ -43,7 +43,7 @@ class NewPlan:
 
     def _waiting(self, tried: list[Tried]) -> FullPlan | None:
         """A stand, where the search for root paths was left before it had found one; the next plan goes on with it."""
-        root = self.task.root_planner.stopped(*self.task.asked)
+        root = self.task.root_planner.stopped(self.task.asked)
         upper = self.task.upper_body(root.path, self.task.least)
         tried.append(Tried(root, upper))
         return FullPlan(root, upper.plan, upper.margins) if upper.reached == root.path.horizon else None
@@ -60,7 +60,7 @@ class NewPlan:
         """
         task, ((before, blocked_at), self._attempts.left_off) = self.task, (self._left_off(), None)
         patience = Patience(_GRIDS_STANDING if task.stands else _GRIDS, self._attempts.enough)
-        for number, root in enumerate(task.root_planner.candidates(*task.asked, task.body.settings.paces, patience)):
+        for number, root in enumerate(task.root_planner.candidates(task.asked, task.body.settings.paces, patience)):
             self._attempts.enter_root(root.checks)
             if number < before or (number > 0 and self._leads_nowhere_new(root, blocked_at + _FARTHER)):
                 continue
@@ -109,7 +109,7 @@ class NewPlan:
         """
         task, root_planner = self.task, self.task.root_planner
         before, away, farthest = root_planner.memory, 0.0, None
-        for root, length in root_planner.ways_out(*task.asked, Patience(enough=self._attempts.enough)):
+        for root, length in root_planner.ways_out(task.asked, Patience(enough=self._attempts.enough)):
             self._attempts.enter_root(root.checks)
             if self._attempts.spent:
                 root_planner.memory = before

@@ -102,7 +102,7 @@ class SafeEnd:
         """A step out of the way of what moves."""
         root_planner = self.task.root_planner
         before = root_planner.memory
-        for root in root_planner.steps_aside(*self.task.asked):
+        for root in root_planner.steps_aside(self.task.asked):
             upper = self.task.upper_body(root.path, self.task.least)
             if upper.reached == root.path.horizon:
                 return FullPlan(root, upper.plan, upper.margins)

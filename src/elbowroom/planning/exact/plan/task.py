@@ -6,8 +6,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from elbowroom.body.root import RootState
-from elbowroom.planning.command import Command
 from elbowroom.planning.exact.memory.previous_plan import StartState
 from elbowroom.planning.exact.plan.attempts import Attempts, same_place
 from elbowroom.planning.exact.plan.upper_body import UpperBodyPlanner
@@ -17,6 +15,7 @@ from elbowroom.planning.result import Blockade, BlockadeKind
 from elbowroom.planning.root.path import RootPath
 from elbowroom.planning.root.plan import RootPlan
 from elbowroom.planning.root.planner import RootPlanner
+from elbowroom.planning.root.query import Asked
 from elbowroom.planning.stillness import STILL, is_still
 
 STANDING = 0.02  # metres: a path that is shorter stands
@@ -51,10 +50,10 @@ class PlanTask:
         return Effort.GLANCE if self.query.hurry else Effort.QUICK
 
     @property
-    def asked(self) -> tuple[RootState, Command, int, float, float]:
+    def asked(self) -> Asked:
         """What a root path is asked for."""
         query = self.query
-        return query.root, query.command, self.horizon, query.interval, query.time
+        return Asked(query.root, query.command, self.horizon, query.interval, query.time)
 
     @property
     def here(self) -> tuple[float, float]:
@@ -79,7 +78,7 @@ class PlanTask:
 
     def kept(self, path: RootPath) -> int:
         """The leading key intervals of a path in which legs and pelvis are free of all, also of what moves."""
-        return self.root_planner.kept(path, *self.asked)
+        return self.root_planner.kept(path, self.asked)
 
     def upper_body(self, path: RootPath, effort: Effort, *, harsh: bool = False) -> UpperPlan:
         """What the upper body can do on a root path, from where the avatar is; `harsh`: it may begin as hard as it
