@@ -10,7 +10,6 @@ from hypothesis import strategies as st
 
 from elbowroom.body.fitting.proportions import proportional_humanoid
 from elbowroom.body.humanoid import Humanoid
-from elbowroom.body.root import RootState
 from elbowroom.control.controller import Controller
 from elbowroom.control.frame import Phase
 from elbowroom.control.plans import planners as module
@@ -21,6 +20,7 @@ from elbowroom.planning.result import LocalPlan, PlanStatus
 from elbowroom.planning.root.memory import RootMemory
 from elbowroom.planning.root.path import RootPath
 from elbowroom.planning.root.plan import RootPlan, RootPlanKind
+from elbowroom.planning.root.query import Asked
 from elbowroom.world.scene import Scene
 
 HUMANOID = proportional_humanoid(1.72)
@@ -39,11 +39,11 @@ class FakeRootPlanner:
     def reset(self) -> None:
         pass
 
-    def plan(self, start: RootState, command: Command, horizon: int, interval: float, start_time: float) -> RootPlan:
-        states = np.tile(start.as_array(), (horizon + 1, 1))
-        states[:, 3] = command.forward
-        states[:, 1] += command.forward * interval * np.arange(horizon + 1)
-        return RootPlan(RootPath(start_time, interval, states), RootPlanKind.STRAIGHT, (0.0, 0.0), 0, 0)
+    def plan(self, asked: Asked) -> RootPlan:
+        states = np.tile(asked.start.as_array(), (asked.horizon + 1, 1))
+        states[:, 3] = asked.command.forward
+        states[:, 1] += asked.command.forward * asked.interval * np.arange(asked.horizon + 1)
+        return RootPlan(RootPath(asked.start_time, asked.interval, states), RootPlanKind.STRAIGHT, (0.0, 0.0), 0, 0)
 
 
 class FakePlanner:

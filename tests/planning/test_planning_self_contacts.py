@@ -30,7 +30,7 @@ WAIST, ARM = np.array([0.1, 0.0, 0.0]), np.array([0.5, 0.2, 0.0, 1.0])
 
 
 def test_a_contact_happens_again_while_the_groups_before_are_the_same() -> None:
-    contact = Contact(DofGroup.LEFT_ARM, 5, WAIST, ARM)
+    contact = Contact(DofGroup.LEFT_ARM, 5, WAIST, ARM, 0.15)
     assert contact.happens(WAIST + 1e-9)
     assert not contact.happens(WAIST + 0.01)
 

@@ -84,16 +84,17 @@ def begun(gaps: Floats32, lengths: Floats, each: int, enough: float, depth: int)
 @inner_exact_kernel
 def _weigh(proof: Proof, part: int, begin: float, level: int, before: int, after: int) -> None:
     """Settle a piece, between two looks, or note it to be halved."""
-    one, other, least, open_pairs = proof.gaps[before], proof.gaps[after], proof.least[part], 0
-    share, hopeless = 0.5**level, min(proof.enough, ENOUGH)
-    for r in range(one.shape[0]):
-        low = 0.5 * (one[r] + other[r] - share * proof.lengths[part, r])
+    one, other, least, lengths = proof.gaps[before], proof.gaps[after], proof.least[part], proof.lengths[part]
+    share, hopeless, open_pairs, lost = 0.5**level, min(proof.enough, ENOUGH), 0, 0
+    enough = proof.enough if level < proof.depth else -np.inf
+    for r in range(np.uint64(one.shape[0])):
+        low = 0.5 * (one[r] + other[r] - share * lengths[r])
         touches = min(one[r], other[r]) < hopeless
-        if low >= proof.enough or level == proof.depth or touches:
-            least[r] = min(least[r], low)
-            proof.lost[part // proof.each] |= touches or low < hopeless
-        else:
-            open_pairs += 1
+        settled = (low >= enough) | touches
+        lost += touches | (settled & (low < hopeless))
+        open_pairs += not settled
+        least[r] = min(least[r], low if settled else np.inf)
+    proof.lost[part // proof.each] |= lost > 0
     if open_pairs > 0:
         n = proof.counts[_ENTERED]
         proof.part[n], proof.begin[n], proof.level[n] = part, begin, level

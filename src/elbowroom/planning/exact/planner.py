@@ -172,9 +172,10 @@ class ExactPlanner:
         root = root_planner.prolonged(left.root.path, asked, pace)
         if not _goes_on(left.root, root, pace, root_planner.settings.untroubled):
             return None
-        roots = root, root.along(root.path.until(near))
-        plans = (prolonged(self._body, left, one, query, Effort.QUICK) for one in roots)
-        return next((plan for plan in plans if plan is not None), None)
+        plan, reached = prolonged(self._body, left, root, query, Effort.QUICK)
+        if plan is None and near <= reached:
+            plan, _ = prolonged(self._body, left, root.along(root.path.until(near)), query, Effort.QUICK)
+        return plan
 
     def _spare(self, query: MotionQuery) -> int:
         return round(self.settings.spare / query.interval)

@@ -22,6 +22,7 @@ class Contact(NamedTuple):
     depth: int  # the key time
     around: Floats  # (LOCAL,) the groups that were posed before it, zero elsewhere
     posture: Floats  # (d,) of the group
+    near: float  # radians: so near to it nothing is tried again
 
     def happens(self, around: Floats) -> bool:
         """Whether the groups before it are as they were then."""

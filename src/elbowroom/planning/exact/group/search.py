@@ -3,9 +3,9 @@
 Nodes are looked at where a cheapest path leads through them (`node_costs`), and all about where one touches. Where a
 path touches between its key times the edge is closed, with those near to it; then the edges of that interval, and of
 those next to it, through which the next paths would lead are checked in one batch, and the next cheapest path is taken.
-The more paths touch, the farther away edges are checked, twice as far each time: what no path gets past is in the way
-for many intervals, and would be run into in one after the other. So edges are swept only where the search is blocked,
-and every candidate is swept as a whole. It is one compiled call.
+Where paths touch in one place after the other, edges are checked twice as far away each time: what no path gets past is
+in the way for many intervals. So edges are swept only where the search is blocked, and every candidate is swept as a
+whole. It is one compiled call.
 """
 
 from typing import NamedTuple
@@ -18,7 +18,7 @@ from elbowroom.planning.exact.group.caches import GroupCache
 from elbowroom.planning.exact.group.carriers import Carriers, carrier_in, carriers_of
 from elbowroom.planning.exact.group.node_costs import Looks, NodeCosts, begun_costs, look_along
 from elbowroom.planning.exact.group.problem import GroupPath, GroupTask, Weights
-from elbowroom.planning.exact.lattice.closed_edges import ClosedEdges, new_closed_edges, reopen_first, with_tables
+from elbowroom.planning.exact.lattice.closed_edges import ClosedEdges, reopen_first, with_tables
 from elbowroom.planning.exact.lattice.dynamic_programming import cheapest_path, settle_backward, widen
 from elbowroom.planning.exact.lattice.extra_nodes import extra_nodes
 from elbowroom.planning.exact.lattice.lattice import EXTRA, Lattice, Work, least_in, new_work
@@ -37,10 +37,12 @@ Floats = NDArray[np.float64]
 Longs = NDArray[np.int64]
 Bools = NDArray[np.bool_]
 
-_CLOSE_RADIUS = 0.1  # radians: edges so near to one that touches are closed with it
+_CLOSE_RADIUS = 0.1  # radians: edges so near to one that touches are closed with it, and
+_CLOSE_MORE = 0.0125  # so much farther about each that touches later
 _FIRST_SLACK = 0.1  # squared radians: how much dearer paths are checked where one touches; doubled when those were
 _BEGIN = plain(0)  # the depth at which the search begins
 _GENTLY = plain(True)  # how it begins
+_NEXT = plain(1)  # intervals before and after one that touches that are looked at with it
 _WIDELY = plain(False)
 _LOOKS = 4  # along so many paths before all nodes are looked at
 
@@ -112,6 +114,15 @@ def _closing(lattice: Lattice, edges: ClosedEdges) -> Lattice:
 
 
 @helper
+def _is_elsewhere(edges: ClosedEdges, touches: Bools) -> bool:
+    """Whether an interval touches that was not looked at before, nor is near to one that was."""
+    found = False
+    for k in range(touches.shape[0]):
+        found |= touches[k] and edges.tables[k] < 0
+    return found
+
+
+@helper
 def _near_to(touches: Bools, far: int) -> Bools:
     """The intervals (n,) that touch, and those up to so many before and after them.
 
@@ -126,9 +137,9 @@ def _near_to(touches: Bools, far: int) -> Bools:
 
 @helper
 def _close(
-    lattice: Lattice, work: Work, edges: ClosedEdges, nodes: Longs, touches: Bools, looked_at: Bools
+    lattice: Lattice, work: Work, edges: ClosedEdges, nodes: Longs, touches: Bools, looked_at: Bools, radius: float
 ) -> tuple[int, float]:
-    """Close the edges of a path through `nodes` (n+1,) in the intervals where it touches, and those near to them.
+    """Close the edges of a path through `nodes` (n+1,) in the intervals where it touches, and those within `radius`.
 
     Each interval that is `looked_at` (n,) has a table. Returns the first of them and how much dearer paths are to be
     checked.
@@ -137,7 +148,7 @@ def _close(
     tables, _, _, slacks = edges
     for k in range(touches.shape[0] - 1, -1, -1):
         if touches[k]:
-            close_near(lattice, work, k, nodes[k], nodes[k + 1], _CLOSE_RADIUS)
+            close_near(lattice, work, k, nodes[k], nodes[k + 1], radius)
         if looked_at[k]:
             first, at = k, tables[k]
             slack = max(2.0 * slacks[at], _FIRST_SLACK)
@@ -173,7 +184,7 @@ def _close_promising(
 def _begun(
     scratch: Scratch, cache: GroupCache, task: GroupTask, weights: Weights, edges: ClosedEdges
 ) -> tuple[_Question, Lattice, Looks, NodeCosts, float, int]:
-    """The lattice of a task, all edges open and no node looked at, and what the search works on.
+    """The lattice of a task, no node looked at, and what the search works on.
 
     Also the greatest clearance that may be asked for, and the capsules checked.
     """
@@ -239,21 +250,24 @@ def _settled(
 
 
 @exact_kernel
-def search_group(scratch: Scratch, cache: GroupCache, task: GroupTask, weights: Weights) -> GroupPath:
-    """The cheapest path whose motion is free as shown, at every moment.
+def search_group(
+    scratch: Scratch, cache: GroupCache, task: GroupTask, weights: Weights, edges: ClosedEdges
+) -> tuple[GroupPath, ClosedEdges]:
+    """The cheapest path whose motion is free as shown, at every moment, and the edges that are closed then.
 
-    It begins gently; if there is no such path, and the task allows it, it begins as hard as it takes.
+    Some may be closed already, by an earlier search under the same carrier for the same goals. It begins gently; if
+    there is no such path, and the task allows it, it begins as hard as it takes.
     """
     goals, interval, velocity, may_be_harsh = task.goals, task.interval, task.velocity, task.harsh
     limits, most_rounds = cache.group.limits, weights.rounds
     horizon, row = goals.shape[0] - 1, cache.group.postures.moves.shape[1] + EXTRA
-    work, edges = new_work(horizon + 1, row), new_closed_edges(horizon, row)
+    work = new_work(horizon + 1, row)
     question, lattice, looks, nodes, most, checks = _begun(scratch, cache, task, weights, edges)
     if task.whole:
         checks += look_along(looks, nodes, nodes.tables[:0], np.ones(horizon, np.bool_), weights)[2]
     entries = np.empty(horizon, np.int64)
     touches, stiff = np.zeros(horizon, np.bool_), np.empty(horizon + 1, np.bool_)
-    first, deepest, spent, settled, gentle, harsh = _BEGIN, 0, most_rounds, 0, _GENTLY, False
+    first, far, deepest, spent, settled, gentle, harsh = _BEGIN, _NEXT, 0, most_rounds, 0, _GENTLY, False
     keys, tangents = np.empty(goals.shape), np.empty(goals.shape)
     for rounds in range(most_rounds):
         reached, path, stale, count, more = _cheapest(lattice, work, looks, nodes, weights, first, rounds == 0)
@@ -276,15 +290,17 @@ def search_group(scratch: Scratch, cache: GroupCache, task: GroupTask, weights: 
         if not touches.any():
             deepest, spent = horizon, rounds + 1
             break
-        looked_at = _near_to(touches, 1 << rounds)
+        far = 2 * far if rounds > 0 and _is_elsewhere(edges, touches) else far
+        looked_at = _near_to(touches, far)
         count, more = _settled(lattice, work, looks, nodes, weights, looked_at, stale)
         settled, checks = settled + count, checks + more
         edges = with_tables(edges, looked_at)
         lattice = _closing(lattice, edges)
-        first, farthest = _close(lattice, work, edges, path, touches, looked_at)
+        first, farthest = _close(lattice, work, edges, path, touches, looked_at, _CLOSE_RADIUS + rounds * _CLOSE_MORE)
         deepest = max(deepest, first)
         best = least_in(work.costs[horizon])
         settle_backward(lattice, work, first, best + farthest)
         checks += _close_promising(question, lattice, work, edges, first, best)
     until = deepest + 1
-    return GroupPath(deepest, keys[:until], tangents[:until], entries, lattice.cost, most, checks, settled, spent)
+    found = GroupPath(deepest, keys[:until], tangents[:until], entries, lattice.cost, most, checks, settled, spent)
+    return found, edges

@@ -1,4 +1,4 @@
-"""Edges that one search has found to touch, or to lie close to such a one: its paths do not use them any more."""
+"""Edges that searches have found to touch, or to lie close to such a one: paths do not use them any more."""
 
 from typing import NamedTuple
 
@@ -21,13 +21,10 @@ class ClosedEdges(NamedTuple):
     slack: Floats  # (M,) squared radians: how much dearer paths were checked
 
 
-@inner_exact_kernel
 def new_closed_edges(intervals: int, nodes: int) -> ClosedEdges:
     """All edges open, in so many intervals between rows of `nodes` nodes."""
-    tables = np.empty(intervals, np.int64)
-    tables[:] = -1
-    shape = (1, nodes, nodes)
-    return ClosedEdges(tables, np.zeros(shape, np.bool_), np.zeros(shape, np.bool_), np.zeros(1))
+    none = 0, nodes, nodes
+    return ClosedEdges(np.full(intervals, -1), np.zeros(none, np.bool_), np.zeros(none, np.bool_), np.zeros(0))
 
 
 @inner_exact_kernel

@@ -11,6 +11,7 @@ from elbowroom.planning.exact.group.caches import PlanCaches
 from elbowroom.planning.exact.group.own_contacts import Contact, rule_out_near
 from elbowroom.planning.exact.group.path_problem import PathProblem
 from elbowroom.planning.exact.group.problem import GroupPath, GroupTask, Guide, extras_of
+from elbowroom.planning.exact.lattice.closed_edges import ClosedEdges
 from elbowroom.planning.exact.lattice.lattice import EXTRA
 from elbowroom.planning.exact.plan.evidence import EvidenceLog
 from elbowroom.planning.exact.sweep.own_body_nodes import OwnBodyTask, own_body_costs
@@ -18,7 +19,8 @@ from elbowroom.planning.exact.sweep.own_body_nodes import OwnBodyTask, own_body_
 Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
 
-_ALIKE = 0.15  # radians: postures that are ruled out with one that touches the body between key times
+_ALIKE = 0.15  # radians: postures that are ruled out with one that touches the body between key times, and
+_MORE_ALIKE = 0.075  # so much farther about each that touches later
 _NO_KEYS = np.zeros((0, LOCAL))
 
 
@@ -49,6 +51,7 @@ class ChildSearch:
         self._given = problem
         self._problem = problem  # with the goals under the waist's path
         self._contacts: list[Contact] = []  # of all motions along this path
+        self._closed: dict[DofGroup, ClosedEdges] = {}  # under the waist's path that is looked at
 
     def followers(self, waist: GroupPath, guides: Mapping[DofGroup, Guide], evidence_log: EvidenceLog) -> GroupPaths:
         """The paths of those children that could follow the waist; they come first, and depend on no other child."""
@@ -60,13 +63,22 @@ class ChildSearch:
         return failed or GroupPaths(tuple(paths), None, self._given.path.horizon)
 
     def under(self, followers: GroupPaths, guides: Mapping[DofGroup, Guide], evidence_log: EvidenceLog) -> GroupPaths:
-        """The children's paths under the waist's, those of its `followers` known; who has a guide follows it."""
+        """The children's paths under the waist's, those of its `followers` known; who has a guide follows it.
+
+        A child that is searched again, since the motion ran into the body, knows which edges were closed before.
+        """
         if followers.failed is not None:
             return followers
+        try:
+            return self._under(followers, guides, evidence_log)
+        finally:
+            self._closed.clear()  # they are large
+
+    def _under(self, followers: GroupPaths, guides: Mapping[DofGroup, Guide], evidence_log: EvidenceLog) -> GroupPaths:
         horizon, (waist, *_) = self._problem.path.horizon, followers.paths
         self._take(waist)
         paths, first, touching = list(followers.paths), len(followers.paths) - 1, 0
-        for _ in range(self._rounds):
+        for turn in range(self._rounds):
             del paths[1 + first :]
             if failed := self._searched(CHILDREN[first:], paths, guides, evidence_log):
                 return failed
@@ -79,12 +91,13 @@ class ChildSearch:
                 return GroupPaths((), waist, touching)
             first = lowest - 1
             for number, interval in contacts:
-                self._remember(paths, number, interval)
+                self._remember(paths, number, interval, _ALIKE + turn * _MORE_ALIKE)
         return GroupPaths(tuple(paths[:-1]), paths[-1], touching)
 
     def _take(self, waist: GroupPath) -> None:
         """Search under this path of the waist from now on."""
         self._problem = self._given.under(waist.keys)
+        self._closed.clear()
 
     def _searched(
         self,
@@ -117,7 +130,8 @@ class ChildSearch:
         if whole:
             costs = self._own_body_costs(group, paths, task)
             task = task._replace(added=costs if follow is None else costs + task.added)
-        return evidence_log.search(group, task)
+        path, self._closed[group] = evidence_log.search_again(group, task, self._closed.get(group))
+        return path
 
     def _resting(self, group: DofGroup) -> Floats32:
         """Infinite where a node touches the naturally walking body, (n+1, W+EXTRA)."""
@@ -141,7 +155,7 @@ class ChildSearch:
             t = contact.depth
             if contact.group is group and contact.happens(around[t]):
                 extras = extras_of(made, task).postures[t]
-                rule_out_near(costs[t], made.postures.configurations, extras, contact.posture, _ALIKE)
+                rule_out_near(costs[t], made.postures.configurations, extras, contact.posture, contact.near)
         return costs
 
     def _around(self, paths: list[GroupPath]) -> Floats:
@@ -151,12 +165,12 @@ class ChildSearch:
             around[:, columns_of(group)] = path.keys
         return around
 
-    def _remember(self, paths: list[GroupPath], number: int, interval: int) -> None:
+    def _remember(self, paths: list[GroupPath], number: int, interval: int, near: float) -> None:
         """Remember what a child did at both ends of an interval in which it ran into the body."""
         around = self._around(paths[:number])
         for t in range(max(interval, 1), interval + 2):
             posture = paths[number].keys[t].copy()
-            self._contacts.append(Contact(SEARCH_ORDER[number], t, around[t], posture))
+            self._contacts.append(Contact(SEARCH_ORDER[number], t, around[t], posture, near))
 
     def _self_contacts(self, found: GroupPaths) -> list[tuple[int, int]]:
         """The groups, by their number, and the intervals in which their motion runs into the body, in order."""

@@ -69,11 +69,15 @@ def extended(previous: Settled, rest: UpperPlan, root: RootPlan) -> FullPlan:
 
 def prolonged(
     body: UpperBodyPlanner, left: FullPlan, root: RootPlan, query: MotionQuery, effort: Effort
-) -> FullPlan | None:
-    """What is left of a walk with a new end on a root path that goes on from it; None if there is none."""
+) -> tuple[FullPlan | None, int]:
+    """What is left of a walk with a new end on a root path that goes on from it; None if there is none.
+
+    And the key time of that path that all groups reached.
+    """
     previous = settled(left, root.path, round(body.settings.revisited / root.path.interval))
     if previous is None:
-        return None
+        return None, 0
     path = rest_of(root.path, previous.at)
     rest = body.plan(path, previous.begins, body.memory.recent.previous(path), query.others, effort, query.go_on)
-    return extended(previous, rest, root) if rest.reached == path.horizon else None
+    found = extended(previous, rest, root) if rest.reached == path.horizon else None
+    return found, previous.at + rest.reached
