@@ -101,3 +101,17 @@ def test_where_there_is_no_path_all_nodes_have_been_looked_at(searches: list[Upp
             np.testing.assert_array_equal(free(some.cost), free(whole.cost))
             blocked += 1
     assert blocked >= 1
+
+
+def test_who_knows_which_edges_were_closed_finds_the_same_way_at_once(searches: list[UpperBodySearch]) -> None:
+    spared = 0
+    for search in searches:
+        task = search.problem.task(DofGroup.WAIST, search.problem.roots, np.zeros_like(search._crouching))
+        first, closed = search.evidence_log.search_again(DofGroup.WAIST, task, None)
+        again, same = search.evidence_log.search_again(DofGroup.WAIST, task, closed)
+        if first.reached == _HORIZON:
+            np.testing.assert_array_equal(again.keys, first.keys)
+            np.testing.assert_array_equal(same.closed, closed.closed)
+            assert again.rounds == 1
+            spared += first.rounds > 1
+    assert spared > 0
