@@ -9,8 +9,11 @@ from elbowroom.body.pose.kinematics import body_model, posture_capsules
 from elbowroom.body.root import FOOT, RISES, ROOT_STATE, SHOWN, WITH_FEET, RootState
 from elbowroom.control.shown.body_check import BodyCheck, Frames
 from elbowroom.control.shown.standing_about import held_between
+from elbowroom.experiment.judge.capsule_shapes import CapsuleShapes
 from elbowroom.experiment.judge.motion import ShownMotion
+from elbowroom.experiment.judge.poses import Poser
 from elbowroom.experiment.judge.settings import JudgeSettings
+from elbowroom.experiment.judge.soles import Soles
 from elbowroom.experiment.judge.verdict import judge
 from elbowroom.world.scene import Scene
 from shown_between import shown_ends
@@ -111,3 +114,33 @@ def test_a_foot_that_lands_is_held_no_lower_on_the_way() -> None:
     held = held_between(body, check.between(frames), frames.uppers, SHARES)
     lowest = (np.minimum(held[:, 1], held[:, 4]) - body.radii[:, None])[body.feet]
     assert (lowest >= np.minimum(lowest[:, :1], lowest[:, -1:]) - 5e-4).all()
+
+
+# A foot leaves level ground for a slope: from one frame to the other its toes come out of the ground, and are turned.
+TOES_IN, TOES_OFF = (
+    (
+        0.0, 0.0, 3.1416, 0.66, 0.0, 0.0, 0.1528, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0152, 0.0767, 0.0873,
+        0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -0.0766, -0.3886, 0.0, 0.8362, 0.0308, 0.0892, 0.0026, 0.6799, 0.0,
+    ),
+    (
+        0.0, -0.011, 3.1416, 0.66, 0.0, 0.0, 0.164, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0223, 0.0767, 0.0763,
+        0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -0.0766, -0.3857, 0.0, 0.8502, 0.0505, 0.1186, 0.0038, 0.987, 0.0,
+    ),
+)  # fmt: skip
+
+
+def test_a_foot_that_leaves_the_ground_is_held_no_higher_than_the_judge_has_it() -> None:
+    sill = {"type": "box", "center": [0.0, 0.05, 5.0], "size": [2.0, 0.1, 0.3]}
+    body = (check := BodyCheck(AVATAR, Scene.of("sill", [sill], finish=(0.0, 9.0)))).soles.body
+    rows, q = np.stack([shown(TOES_IN), shown(TOES_OFF)]), np.zeros((2, DOF))
+    q[:, :3] = rows[:, :3]
+    motion, poser = ShownMotion.at_rate(q, rows), Poser(AVATAR)
+    moments = motion.moments(60.0 * (len(SHARES) - 1))
+    raised = Soles(AVATAR, poser, motion, floors=True).raised(poser.at(motion, moments), moments)
+    placed = CapsuleShapes(AVATAR).placed(raised)
+    judged_lowest = (placed.middles[..., 1] - np.abs(placed.half_axes[..., 1])).T - body.radii[:, None]
+    frames = Frames((rows[0], rows[1]), (np.zeros(LOCAL), np.zeros(LOCAL)), (0.0, 1 / 60))
+    held = held_between(body, check.between(frames), frames.uppers, SHARES)
+    lowest = np.minimum(held[:, 1], held[:, 4]) - body.radii[:, None]
+    assert judged_lowest[body.feet].min() < -3e-4
+    assert (lowest[body.feet] < judged_lowest[body.feet] + 5e-5).all()

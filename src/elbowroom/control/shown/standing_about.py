@@ -18,7 +18,7 @@ from elbowroom.body.root import FOOT, RISES, ROOT_STATE, WITH_FEET
 from elbowroom.by_reference import by_reference
 from elbowroom.jit import brief_exact_kernel, helper, inner_exact_kernel, plain
 from elbowroom.planning.halving import begun, due, settle
-from elbowroom.planning.model.footing import floors_under, levelled, lift_feet
+from elbowroom.planning.model.footing import floors_under, levelled, lift_feet, lift_of
 from elbowroom.world.obstacles.around_body import Standing, clearances_around
 
 Floats = NDArray[np.float64]
@@ -137,19 +137,22 @@ def gaps_about(
 def held_between(body: ShownBody, frames: FramePair, uppers: Both, shares: Floats) -> Floats32:
     """The capsules (C, 6, N) at `shares` (N,) of the time between two frames, as seen from the first one's place.
 
-    As screens show them, but for feet: those are as high as they are held, evenly from one frame to the other: root
-    states in between are none where a foot comes down, since what they tell of its swing ends there. `uppers` (LOCAL,)
-    are those of the frames.
+    As screens show them, but for feet: those are as high as they are held. How deep they are on the plane is told by
+    the frames: their capsules go evenly from the one to the other there. Root states in between are none where a foot
+    comes down, since what they tell of its swing ends there. `uppers` (LOCAL,) are those of the frames.
     """
     axes = capsules_between(body.whole, frames, shares)
     if len(body.feet) > 0:
-        lifts, q = np.zeros((len(body.radii), 6, 2), np.float32), np.zeros((2, DOF))
+        q = np.zeros((2, DOF))
         for end in range(2):
             q[end, DOF - LOCAL :] = uppers[end]
-        hold_feet(body, q, frames.roots, lifts)
+        level = posed_capsules(body.whole, q, levelled(frames.roots))
         for n in range(len(shares)):
+            share = np.float32(shares[n])
             for foot in body.feet:
-                lift = lifts[foot, 1, 0] + np.float32(shares[n]) * (lifts[foot, 1, 1] - lifts[foot, 1, 0])
+                first = level[foot, 1, 0] + share * (level[foot, 1, 1] - level[foot, 1, 0])
+                last = level[foot, 4, 0] + share * (level[foot, 4, 1] - level[foot, 4, 0])
+                lift = lift_of(body.radii[foot], min(first, last))
                 axes[foot, 1, n] += lift
                 axes[foot, 4, n] += lift
     return axes

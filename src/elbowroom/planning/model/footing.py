@@ -314,6 +314,12 @@ def levelled(states: Floats) -> Floats:
     return level
 
 
+@helper
+def lift_of(radius: Any, lowest: Any) -> Any:
+    """Metres that a foot is held higher whose capsule's axis comes as low as that in the same stride on the plane."""
+    return max(radius - lowest, _NOTHING) + _IN_GROUND
+
+
 @exact_kernel
 def lift_feet(segments: Floats32, feet: Longs, on_plane: Floats32, soles: Longs, radii: Floats32, spare: float) -> None:
     """Raise the capsules `feet` (F,) among `segments` (C, 6, N) by as much as feet are below the plane, and 3 mm.
@@ -324,7 +330,6 @@ def lift_feet(segments: Floats32, feet: Longs, on_plane: Floats32, soles: Longs,
     for f in range(feet.shape[0]):
         own, sole = segments[feet[f]], on_plane[soles[f]]
         for n in range(segments.shape[2]):
-            below = radii[soles[f]] - min(sole[1, n], sole[4, n])
-            lift = max(below, _NOTHING) + _IN_GROUND + np.float32(spare)
+            lift = lift_of(radii[soles[f]], min(sole[1, n], sole[4, n])) + np.float32(spare)
             own[1, n] += lift
             own[4, n] += lift
