@@ -25,7 +25,7 @@ def _surface_of_capsules(rng: np.random.Generator, each: int) -> BodyPoints:
 
 def _rigid(points: BodyPoints) -> Surface:
     """A surface of points that each move with their one joint."""
-    return Surface(points, poses_of(SKELETON).carried(points.joints, points.positions), points)
+    return Surface(poses_of(SKELETON).carried(points.joints, points.positions), points.joints, points)
 
 
 def test_capsules_are_found_again_from_their_surface() -> None:

@@ -31,13 +31,18 @@ _GOLDEN = (0.7548776662466927, 0.5698402909980532)  # steps of the sequence R2: 
 class Surface:
     """What a body looks like from outside, T-posed with its fingers relaxed, metres, in the skeleton's frame."""
 
-    vertices: BodyPoints  # each with the joint of the greatest weight
     posed: Floats  # (P, V, 3) the vertices in the poses of `flexing.Poses`, which begin with T-pose
+    joints: Ints  # (V,) of the greatest weight of each
     samples: BodyPoints  # spread evenly over its area, in those poses in turn
+
+    @property
+    def vertices(self) -> BodyPoints:
+        """The vertices in T-pose."""
+        return BodyPoints(self.posed[0], self.joints)
 
     def scaled(self, factor: float) -> "Surface":
         """The surface of an avatar so many times as large."""
-        return Surface(self.vertices.scaled(factor), factor * self.posed, self.samples.scaled(factor))
+        return Surface(factor * self.posed, self.joints, self.samples.scaled(factor))
 
 
 def used_vertices(body: BodyMesh) -> Ints:
@@ -54,18 +59,18 @@ def vertex_points(body: BodyMesh) -> BodyPoints:
 
 def surface_of(body: BodyMesh, skeleton: Skeleton, count: int = SAMPLES) -> Surface:
     """The surface of a body mesh in the skeleton's frame, with `count` samples; none where it has no area."""
-    relaxed, poses = with_relaxed_hands(body, skeleton), poses_of(skeleton)
-    posed = poses.skinned(relaxed, used_vertices(relaxed))
+    relaxed, poses, used = with_relaxed_hands(body, skeleton), poses_of(skeleton), used_vertices(body)
+    posed, carriers = poses.skinned(relaxed, used), relaxed.joints[used, 0]
     areas = triangle_areas(relaxed.vertices()[body.triangles])
     if not areas.sum() > 0.0:
-        return Surface(vertex_points(relaxed), posed, BodyPoints(np.zeros((0, 3)), np.zeros(0, np.int64)))
+        return Surface(posed, carriers, BodyPoints(np.zeros((0, 3)), np.zeros(0, np.int64)))
     which, shares = _spread(areas, count)
     found = [
         _carried(relaxed, skeleton, poses, relaxed.triangles[which[some]], shares[some])
         for some in (slice(first, first + _AT_ONCE) for first in range(0, count, _AT_ONCE))
     ]
     places, joints = (np.concatenate(column) for column in zip(*found, strict=True))
-    return Surface(vertex_points(relaxed), posed, BodyPoints(places, joints))
+    return Surface(posed, carriers, BodyPoints(places, joints))
 
 
 def _carried(body: BodyMesh, skeleton: Skeleton, poses: Poses, corners: Ints, shares: Floats) -> tuple[Floats, Ints]:
