@@ -217,7 +217,7 @@ class BodyCheck:
         moved = [around.moving.fastest * (last - first) for around in self._around]
         moved += [other.travel(first, last) for other in self.others]
         before, after = ends
-        own = ways_between(self.soles.body, self.between(frames), (before.axes, after.axes))
+        own = ways_between(self.soles.body, self.between(frames), frames.uppers, (before.axes, after.axes))
         ways = float(own.max()) + np.array([moved])
         gaps = [self._from_movers(end.axes, end.root, time) for end, time in zip(ends, frames.times, strict=True)]
         proof = begun(np.array(gaps, np.float32), ways, 1, 0.0, HALVINGS)

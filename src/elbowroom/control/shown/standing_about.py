@@ -133,6 +133,41 @@ def gaps_about(
     return found
 
 
+@inner_exact_kernel
+def _on_plane(body: ShownBody, frames: FramePair, uppers: Both) -> Floats32:
+    """How high both ends of the axes of F feet are in two frames' strides on the plane, (F, 2, 2) metres.
+
+    `uppers` (LOCAL,) are those of the frames. No feet on plain ground.
+    """
+    heights = np.empty((len(body.feet), 2, 2), np.float32)
+    if len(body.feet) > 0:
+        q = np.zeros((2, DOF))
+        for n in range(2):
+            q[n, DOF - LOCAL :] = uppers[n]
+        level = posed_capsules(body.whole, q, levelled(frames.roots))
+        for f in range(len(heights)):
+            for end in range(2):
+                for n in range(2):
+                    heights[f, end, n] = level[body.feet[f], 1 + 3 * end, n]
+    return heights
+
+
+@inner_exact_kernel
+def _held(body: ShownBody, frames: FramePair, on_plane: Floats32, shares: Floats) -> Floats32:
+    """`held_between`, of who knows how high feet are `_on_plane`."""
+    axes = capsules_between(body.whole, frames, shares)
+    for n in range(len(shares)):
+        share = np.float32(shares[n])
+        for f in range(len(on_plane)):
+            foot, ends = body.feet[f], on_plane[f]
+            first = ends[0, 0] + share * (ends[0, 1] - ends[0, 0])
+            last = ends[1, 0] + share * (ends[1, 1] - ends[1, 0])
+            lift = lift_of(body.radii[foot], min(first, last))
+            axes[foot, 1, n] += lift
+            axes[foot, 4, n] += lift
+    return axes
+
+
 @brief_exact_kernel
 def held_between(body: ShownBody, frames: FramePair, uppers: Both, shares: Floats) -> Floats32:
     """The capsules (C, 6, N) at `shares` (N,) of the time between two frames, as seen from the first one's place.
@@ -141,21 +176,7 @@ def held_between(body: ShownBody, frames: FramePair, uppers: Both, shares: Float
     the frames: their capsules go evenly from the one to the other there. Root states in between are none where a foot
     comes down, since what they tell of its swing ends there. `uppers` (LOCAL,) are those of the frames.
     """
-    axes = capsules_between(body.whole, frames, shares)
-    if len(body.feet) > 0:
-        q = np.zeros((2, DOF))
-        for end in range(2):
-            q[end, DOF - LOCAL :] = uppers[end]
-        level = posed_capsules(body.whole, q, levelled(frames.roots))
-        for n in range(len(shares)):
-            share = np.float32(shares[n])
-            for foot in body.feet:
-                first = level[foot, 1, 0] + share * (level[foot, 1, 1] - level[foot, 1, 0])
-                last = level[foot, 4, 0] + share * (level[foot, 4, 1] - level[foot, 4, 0])
-                lift = lift_of(body.radii[foot], min(first, last))
-                axes[foot, 1, n] += lift
-                axes[foot, 4, n] += lift
-    return axes
+    return _held(body, frames, _on_plane(body, frames, uppers), shares)
 
 
 @helper
@@ -185,15 +206,34 @@ def _soles_stay_above(body: ShownBody, frames: FramePair, uppers: Both, floors: 
     return True
 
 
-@brief_exact_kernel
-def ways_between(body: ShownBody, frames: FramePair, axes: BothAxes) -> Floats:
-    """No point of a capsule's axis goes farther between two frames, (C,) metres; `axes` (C, 6, 1) are those in both."""
-    both = np.empty((len(body.radii), 6, 2), np.float32)
+@inner_exact_kernel
+def _ways(body: ShownBody, frames: FramePair, on_plane: Floats32, axes: BothAxes) -> Floats:
+    """`ways_between`, of who knows how high feet are `_on_plane`."""
+    both, risen = np.empty((len(body.radii), 6, 2), np.float32), np.zeros(len(body.radii))
     both[:, :, 0], both[:, :, 1] = axes[0][:, :, 0], axes[1][:, :, 0]
+    for f in range(len(on_plane)):
+        foot, ends = body.feet[f], on_plane[f]
+        for n in range(2):
+            lift = lift_of(body.radii[foot], min(ends[0, n], ends[1, n]))
+            both[foot, 1, n] -= lift
+            both[foot, 4, n] -= lift
+        risen[foot] = max(abs(ends[0, 1] - ends[0, 0]), abs(ends[1, 1] - ends[1, 0]))
     for end in range(0, 6, 3):
         both[:, end, 1] += frames.roots[1, 0]
         both[:, end + 2, 1] += frames.roots[1, 1]
-    return speeds_between(body.whole, frames, both)
+    ways = speeds_between(body.whole, frames, both)
+    for foot in body.feet:
+        ways[foot] += risen[foot]
+    return ways
+
+
+@brief_exact_kernel
+def ways_between(body: ShownBody, frames: FramePair, uppers: Both, axes: BothAxes) -> Floats:
+    """No point of a capsule's axis goes farther between two frames, (C,) metres; `axes` (C, 6, 1) are those in both.
+
+    A foot that is held goes as far as it is shown to, and is raised or lowered by no more than its ends on the plane.
+    """
+    return _ways(body, frames, _on_plane(body, frames, uppers), axes)
 
 
 @brief_exact_kernel
@@ -214,12 +254,13 @@ def proven_between(
     if len(body.feet) > 0 and _go_far(frames.roots) and not _soles_stay_above(body, frames, uppers, floors):
         return False
     x, z, (parts, shares) = frames.place[0], frames.place[1], (np.empty(1, np.int64), np.empty(1))
-    ways = ways_between(body, frames, axes).reshape((1, len(body.radii)))
+    on_plane = _on_plane(body, frames, uppers)
+    ways = _ways(body, frames, on_plane, axes).reshape((1, len(body.radii)))
     found, ends = np.empty((1, len(body.radii)), np.float32), np.empty((2, len(body.radii)), np.float32)
     ends[0], ends[1] = gaps
     proof, enough = begun(ends, ways, _ONE, 0.0, HALVINGS), 2.0 * ways.max()
     while due(proof, parts, shares) > 0:
-        held = held_between(body, frames, uppers, shares)
+        held = _held(body, frames, on_plane, shares)
         found[0] = gaps_about(body.radii, body.sides, standing, held, x, z, floors, enough)
         settle(proof, found, _ONE)
     return bool(proof.least.min() >= 0.0)
