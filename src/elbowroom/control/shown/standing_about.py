@@ -153,7 +153,7 @@ def _on_plane(body: ShownBody, frames: FramePair, uppers: Both) -> Floats32:
 
 
 @inner_exact_kernel
-def _held(body: ShownBody, frames: FramePair, on_plane: Floats32, shares: Floats) -> Floats32:
+def _raised_between(body: ShownBody, frames: FramePair, on_plane: Floats32, shares: Floats) -> Floats32:
     """`held_between`, of who knows how high feet are `_on_plane`."""
     axes = capsules_between(body.whole, frames, shares)
     for n in range(len(shares)):
@@ -176,7 +176,7 @@ def held_between(body: ShownBody, frames: FramePair, uppers: Both, shares: Float
     the frames: their capsules go evenly from the one to the other there. Root states in between are none where a foot
     comes down, since what they tell of its swing ends there. `uppers` (LOCAL,) are those of the frames.
     """
-    return _held(body, frames, _on_plane(body, frames, uppers), shares)
+    return _raised_between(body, frames, _on_plane(body, frames, uppers), shares)
 
 
 @helper
@@ -207,7 +207,7 @@ def _soles_stay_above(body: ShownBody, frames: FramePair, uppers: Both, floors: 
 
 
 @inner_exact_kernel
-def _ways(body: ShownBody, frames: FramePair, on_plane: Floats32, axes: BothAxes) -> Floats:
+def _farthest_between(body: ShownBody, frames: FramePair, on_plane: Floats32, axes: BothAxes) -> Floats:
     """`ways_between`, of who knows how high feet are `_on_plane`."""
     both, risen = np.empty((len(body.radii), 6, 2), np.float32), np.zeros(len(body.radii))
     both[:, :, 0], both[:, :, 1] = axes[0][:, :, 0], axes[1][:, :, 0]
@@ -233,7 +233,7 @@ def ways_between(body: ShownBody, frames: FramePair, uppers: Both, axes: BothAxe
 
     A foot that is held goes as far as it is shown to, and is raised or lowered by no more than its ends on the plane.
     """
-    return _ways(body, frames, _on_plane(body, frames, uppers), axes)
+    return _farthest_between(body, frames, _on_plane(body, frames, uppers), axes)
 
 
 @brief_exact_kernel
@@ -255,12 +255,12 @@ def proven_between(
         return False
     x, z, (parts, shares) = frames.place[0], frames.place[1], (np.empty(1, np.int64), np.empty(1))
     on_plane = _on_plane(body, frames, uppers)
-    ways = _ways(body, frames, on_plane, axes).reshape((1, len(body.radii)))
+    ways = _farthest_between(body, frames, on_plane, axes).reshape((1, len(body.radii)))
     found, ends = np.empty((1, len(body.radii)), np.float32), np.empty((2, len(body.radii)), np.float32)
     ends[0], ends[1] = gaps
     proof, enough = begun(ends, ways, _ONE, 0.0, HALVINGS), 2.0 * ways.max()
     while due(proof, parts, shares) > 0:
-        held = _held(body, frames, on_plane, shares)
+        held = _raised_between(body, frames, on_plane, shares)
         found[0] = gaps_about(body.radii, body.sides, standing, held, x, z, floors, enough)
         settle(proof, found, _ONE)
     return bool(proof.least.min() >= 0.0)
