@@ -51,7 +51,6 @@ class ChildSearch:
         self._given = problem
         self._problem = problem  # with the goals under the waist's path
         self._contacts: list[Contact] = []  # of all motions along this path
-        self._closed: dict[DofGroup, ClosedEdges] = {}  # under the waist's path that is looked at
 
     def followers(self, waist: GroupPath, guides: Mapping[DofGroup, Guide], evidence_log: EvidenceLog) -> GroupPaths:
         """The paths of those children that could follow the waist; they come first, and depend on no other child."""
@@ -59,7 +58,7 @@ class ChildSearch:
             return GroupPaths((), waist, waist.reached)
         self._take(waist)
         paths = [waist]
-        failed = self._searched(followers_of(DofGroup.WAIST), paths, guides, evidence_log)
+        failed = self._searched(followers_of(DofGroup.WAIST), paths, guides, evidence_log, {})
         return failed or GroupPaths(tuple(paths), None, self._given.path.horizon)
 
     def under(self, followers: GroupPaths, guides: Mapping[DofGroup, Guide], evidence_log: EvidenceLog) -> GroupPaths:
@@ -69,18 +68,13 @@ class ChildSearch:
         """
         if followers.failed is not None:
             return followers
-        try:
-            return self._under(followers, guides, evidence_log)
-        finally:
-            self._closed.clear()  # they are large
-
-    def _under(self, followers: GroupPaths, guides: Mapping[DofGroup, Guide], evidence_log: EvidenceLog) -> GroupPaths:
+        closed: dict[DofGroup, ClosedEdges] = {}
         horizon, (waist, *_) = self._problem.path.horizon, followers.paths
         self._take(waist)
         paths, first, touching = list(followers.paths), len(followers.paths) - 1, 0
         for turn in range(self._rounds):
             del paths[1 + first :]
-            if failed := self._searched(CHILDREN[first:], paths, guides, evidence_log):
+            if failed := self._searched(CHILDREN[first:], paths, guides, evidence_log, closed):
                 return failed
             found = GroupPaths.joined(paths, horizon, self._problem.goals)
             contacts = self._self_contacts(found)
@@ -97,7 +91,6 @@ class ChildSearch:
     def _take(self, waist: GroupPath) -> None:
         """Search under this path of the waist from now on."""
         self._problem = self._given.under(waist.keys)
-        self._closed.clear()
 
     def _searched(
         self,
@@ -105,33 +98,29 @@ class ChildSearch:
         paths: list[GroupPath],
         guides: Mapping[DofGroup, Guide],
         evidence_log: EvidenceLog,
+        closed: dict[DofGroup, ClosedEdges],
     ) -> GroupPaths | None:
-        """Add the paths of some groups to those of the groups before them; how far they led if one has none."""
+        """Add the paths of some groups to those of the groups before them; how far they led if one has none.
+
+        Edges that were `closed` under this waist stay so, and those that are closed now are added.
+        """
         for group in groups:
-            path = self._path(group, paths, guides.get(group), evidence_log, whole=bool(self._contacts))
+            task = self._task(group, paths, guides.get(group), whole=bool(self._contacts))
+            path, closed[group] = evidence_log.search_again(group, task, closed.get(group))
             if path.reached < self._problem.path.horizon:
                 return GroupPaths(tuple(paths), path, path.reached)
             paths.append(path)
         return None
 
-    def _path(
-        self,
-        group: DofGroup,
-        paths: list[GroupPath],
-        follow: Guide | None,
-        evidence_log: EvidenceLog,
-        *,
-        whole: bool,
-    ) -> GroupPath:
-        """The path of one group among those of the groups before it; if `whole`, the body is where these have it."""
+    def _task(self, group: DofGroup, paths: list[GroupPath], follow: Guide | None, *, whole: bool) -> GroupTask:
+        """What one group has to do among the groups before it; if `whole`, the body is where their paths have it."""
         whole = whole and bool(group.clear_of)
         resting = None if whole else self._resting(group)
         task = self._problem.task(group, paths[0].entries, resting, follow)
         if whole:
             costs = self._own_body_costs(group, paths, task)
             task = task._replace(added=costs if follow is None else costs + task.added)
-        path, self._closed[group] = evidence_log.search_again(group, task, self._closed.get(group))
-        return path
+        return task
 
     def _resting(self, group: DofGroup) -> Floats32:
         """Infinite where a node touches the naturally walking body, (n+1, W+EXTRA)."""
