@@ -1,5 +1,7 @@
 """Feet that step where ground is not a plane: as on the plane where it is level, and on treads, sills and ramps."""
 
+import math
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -10,7 +12,7 @@ from elbowroom.body.gait.foot_state import SWING, Z
 from elbowroom.body.gait.gliding import gliding
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.pose.kinematics import lower_body
-from elbowroom.body.root import HEIGHT, RISES, ROOT_STATE, WITH_FEET
+from elbowroom.body.root import FOOT, HEIGHT, RISES, ROOT_STATE, WITH_FEET
 from elbowroom.control.controller import Controller
 from elbowroom.planning.command import Command
 from elbowroom.world.scene import Scene
@@ -60,3 +62,36 @@ def test_feet_of_the_cycle_are_raised_alike_in_a_row_of_their_own() -> None:
         both = (gliding(GAIT, still, root, 60.0), root)
         own, planned = (lower_body(GAIT, row[None], lowering) for row in both)
         assert max(np.abs(one - other).max() for one, other in zip(own, planned, strict=True)) < 0.012
+
+
+def up_and_down(backwards: bool) -> list[dict[str, Any]]:
+    """A ramp of 12 degrees up to a floor of 1 m, and from there a stair of 17 by 28 cm; or the other way round."""
+    top, run, whole = 0.51, 0.51 / math.tan(math.radians(12.0)), 6.0
+
+    def along(z: float) -> float:
+        return whole - z if backwards else z
+
+    points = [[x, y, along(z)] for x in (-0.9, 0.9) for y, z in ((0.0, 0.8), (0.0, 0.8 + run), (top, 0.8 + run))]
+    made: list[dict[str, Any]] = [{"type": "hull", "points": points, "center": [0.0, 0.0, 0.0]}]
+    for k in range(3):
+        length, height = 1.0 + 0.28 * k, top - 0.17 * k
+        center = [0.0, 0.5 * height, along(0.8 + run + 0.5 * length)]
+        made.append({"type": "box", "center": center, "size": [1.8, height, length]})
+    return made
+
+
+@pytest.mark.parametrize("backwards", [False, True])
+def test_feet_that_go_up_and_down_are_set_down(backwards: bool) -> None:
+    """They have come down when they land: none falls the rest of its way at once."""
+    controller, rows = Controller(AVATAR, Scene.of("place", up_and_down(backwards), finish=(0.0, 8.0))), list[Floats]()
+    while controller.root.z < 6.0 and len(rows) < 700:
+        rows.append(controller.step(ASKED[0], FRAME).root)
+    assert controller.root.z >= 6.0
+    falls = [
+        before[HEIGHT] + before[RISES + 2 * side] - now[HEIGHT] - now[RISES + 2 * side]
+        for before, now in pairwise(rows)
+        for side, swing in enumerate((ROOT_STATE + SWING, ROOT_STATE + FOOT + SWING))
+        if before[swing] > 0.0 >= now[swing]
+    ]
+    assert len(falls) > 10
+    assert max(falls) < 0.01, falls

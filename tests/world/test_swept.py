@@ -1,11 +1,14 @@
-"""What a sole is over on its way: the highest ground under it, whichever way it goes and turns."""
+"""What a sole is over on its way: the ground that holds it highest, whichever way it goes, turns and slopes."""
+
+import math
 
 import numpy as np
+import pytest
 from numpy.typing import NDArray
 
 from elbowroom.jit import exact_kernel
 from elbowroom.world.ground.ground import Ground
-from elbowroom.world.ground.sole import Sole
+from elbowroom.world.ground.sole import Sole, sole_on
 from elbowroom.world.ground.swept import Spot, set_highest_under
 from elbowroom.world.scene import Scene
 
@@ -53,7 +56,7 @@ def test_it_is_the_highest_that_the_sole_is_over_but_for_what_lies_between_looks
     for _ in range(50):
         begin = rng.uniform((-0.8, -0.4, -3.0), (0.8, 0.8, 3.0))
         end = begin + rng.uniform((-0.5, -0.5, -0.6), (0.5, 0.5, 0.6))
-        found = highest(ground, SOLE, tuple(begin.tolist()), tuple(end.tolist()), 0.1, SHARES)
+        found = highest(ground, SOLE, (*begin.tolist(), 0.0), (*end.tolist(), 0.0), 0.1, SHARES)
         for share, height in zip(SHARES.tolist(), found.tolist(), strict=True):
             spot = begin + share * (end - begin)
             assert under(spot, BETWEEN, BETWEEN) - 1e-6 <= height <= under(spot, -BETWEEN, 0.0) + 1e-6
@@ -61,6 +64,22 @@ def test_it_is_the_highest_that_the_sole_is_over_but_for_what_lies_between_looks
     assert over > 25
 
 
+@pytest.mark.parametrize("yaw", [0.0, math.pi])
+def test_a_sole_that_slopes_as_its_way_does_is_held_where_it_would_lie(yaw: float) -> None:
+    grade, ahead = math.tan(math.radians(20.0)), math.cos(yaw)
+    points = [[x, y, z] for x in (-1.0, 1.0) for y, z in ((0.0, 1.0), (0.0, 4.0), (3.0 * grade, 4.0))]
+    ground = Scene.of("ramp", [{"type": "hull", "points": points, "center": [0, 0, 0]}], finish=(0.0, 6.0)).ground
+    places = 2.5 + ahead * 0.5 * SHARES
+    heights = grade * (places - 1.0)
+    slope = -ahead * math.radians(20.0)
+    begin, end = (0.0, 2.5, yaw, slope), (0.0, 2.5 + ahead * 0.5, yaw, slope)
+    found = highest(ground, SOLE, begin, end, float(heights[0]), SHARES)
+    assert found == pytest.approx(heights, abs=1e-9)
+    assert sole_on(ground, SOLE, (0.0, float(heights[0]), 2.5), yaw) == pytest.approx((heights[0], slope))
+    level = highest(ground, SOLE, (*begin[:3], 0.0), (*end[:3], 0.0), float(heights[0]), SHARES)
+    assert np.all(level > heights + 0.09 * grade), "one that is level is held by its higher end"
+
+
 def test_there_is_none_where_no_foot_stands() -> None:
     ground = Scene.of("step", [{"type": "box", "center": [0, 0.05, 2], "size": [1, 0.1, 1]}], finish=(0.0, 3.0)).ground
-    assert np.all(np.isneginf(highest(ground, SOLE, (0.6, 0.0, 0.0), (0.6, 0.1, 0.0), 30.0, SHARES)))
+    assert np.all(np.isneginf(highest(ground, SOLE, (0.6, 0.0, 0.0, 0.0), (0.6, 0.1, 0.0, 0.0), 30.0, SHARES)))

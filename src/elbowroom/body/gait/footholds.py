@@ -13,7 +13,16 @@ from numpy.typing import NDArray
 
 from elbowroom.body.gait.cycle import GaitShape, home_of
 from elbowroom.body.gait.foot_state import SWING, X, Z, carry, is_flat, tilt
-from elbowroom.body.gait.landing_places import Stepper, bound_for, landing_place, place_under
+from elbowroom.body.gait.landing_places import (
+    FARTHER,
+    LOWER,
+    Stepper,
+    bound_for,
+    landing_place,
+    place_under,
+    time_over,
+    way_over,
+)
 from elbowroom.body.gait.own_steps import CYCLE, OwnSteps, own_roll, own_stride_at
 from elbowroom.body.gait.stepping_times import (
     TO_REST,
@@ -35,7 +44,7 @@ Floats = NDArray[np.float64]
 
 _LEFT, _RIGHT = plain(0), plain(1)
 
-NO_FARTHER = np.zeros(2)
+ON_THE_PLANE = np.zeros((2, 2))  # how feet land there, `FARTHER` and `LOWER`
 UNKNOWN = np.empty((0, 1 + ROOT_STATE))  # nothing is known of where the root will come
 
 
@@ -60,13 +69,13 @@ def _pitch_in_stance(own: OwnSteps, legs: Floats, stride: Stride, side: int, foo
 
 @brief_exact_kernel
 def step_feet(
-    who: Stepper, before: Floats, root: Floats, dt: float, coming: Floats, farther: Floats, out: Floats
+    who: Stepper, before: Floats, root: Floats, dt: float, coming: Floats, lands: Floats, out: Floats
 ) -> None:
     """The feet `dt` seconds later: `out` (WITH_FEET,) is for `root` (7,) what `before` (WITH_FEET,) was then.
 
     They step to where the root is meant to come: `coming` (m, 8), seconds from now and root states; where nothing is
-    known of that it keeps its velocities; and so many metres `farther` (2,) ahead. With `dt` 0 nothing moves over the
-    ground, a swinging foot neither.
+    known of that it keeps its velocities; and as it `lands` (2, 2) there, columns `FARTHER` and `LOWER`. With `dt` 0
+    nothing moves over the ground, a swinging foot neither.
     """
     legs, scale, own = who.legs, who.scale, who.own
     carry(before, root, out)
@@ -91,15 +100,16 @@ def step_feet(
                 since = lifted_since(stride, side, root, dt)
                 tilt(foot, _pitch_in_stance(own, legs, stride, side, foot), dt - since)
             left = max(time_to_landing(own, legs, stride, side, root, foot, twin, since), 0.0)
-            lands = left if left > 0.0 else -landed_since(stride, side, root, dt)
-            goal = landing_place(who, side, root, twin, coming, lands, farther[side], later)
-            goal = bound_for(own, stride, side, foot, goal, since + left)
+            until = left if left > 0.0 else -landed_since(stride, side, root, dt)
+            farther, way = lands[side, FARTHER], way_over(stride, lands[side, LOWER])
+            goal = landing_place(who, side, root, twin, coming, until, farther, later)
+            goal = bound_for(own, stride, side, foot, goal, since + left, way)
             needed = time_needed(stride, foot, goal)
             if left < needed and not is_overtaken(legs, 1 - side, twin):  # what it goes to has changed
                 left, rest = needed, needed / (TO_REST * np.sqrt(scale))
-                goal = landing_place(who, side, root, twin, coming, left, farther[side], later)
+                goal = landing_place(who, side, root, twin, coming, left, farther, later)
                 foot[SWING] = min(foot[SWING], max(1.0 - rest, 0.2))
-            pitch = swing_foot(own, stride, side, goal, (since, left), foot, twin)
+            pitch = swing_foot(own, stride, side, goal, (since, left), way, foot, twin)
         if foot[SWING] <= 0.0:
             pitch = _pitch_in_stance(own, legs, stride, side, foot)
         tilt(foot, pitch, dt)
@@ -107,19 +117,22 @@ def step_feet(
 
 @inner_exact_kernel
 def landing(
-    who: Stepper, row: Floats, side: int, coming: Floats, farther: Floats, later: Floats
-) -> tuple[float, float, float, float]:
-    """Where a foot that swings in a row (WITH_FEET or more,) will land: x, z and yaw seen from the root; in how long.
+    who: Stepper, row: Floats, side: int, coming: Floats, lands: Floats, later: Floats
+) -> tuple[float, float, float, float, float]:
+    """Where a foot that swings in a row (WITH_FEET or more,) will land: x, z and yaw seen from the root.
 
-    `coming` (m, 8), seconds from the row, and `farther` (2,) are as in `step_feet`; `later` (7,) is scratch.
+    Then in how many seconds, and how many until it is over that place. `coming` (m, 8), seconds from the row, and how
+    it `lands` (2, 2) are as in `step_feet`; `later` (7,) is scratch.
     """
     legs, scale, own = who.legs, who.scale, who.own
     foot, twin = row[ROOT_STATE + FOOT * side :], row[ROOT_STATE + FOOT * (1 - side) :]
     stride = own_stride_at(own, scale, row)
     left = max(time_to_landing(own, legs, stride, side, row, foot, twin, 0.0), 0.0)
-    goal = landing_place(who, side, row, twin, coming, left, farther[side], later)
-    goal = bound_for(own, stride, side, foot, goal, left)
-    return goal[0], goal[1], goal[2], max(left, time_needed(stride, foot, goal))
+    way = way_over(stride, lands[side, LOWER])
+    goal = landing_place(who, side, row, twin, coming, left, lands[side, FARTHER], later)
+    goal = bound_for(own, stride, side, foot, goal, left, way)
+    left = max(left, time_needed(stride, foot, goal))
+    return goal[0], goal[1], goal[2], left, time_over(foot, way, left)
 
 
 @brief_kernel
@@ -150,7 +163,7 @@ def onward(
     """
     out = np.empty(WITH_FEET)
     who = Stepper(gait.legs, gait.scale, own)
-    step_feet(who, before, root[:ROOT_STATE].copy(), dt, coming, NO_FARTHER, out)
+    step_feet(who, before, root[:ROOT_STATE].copy(), dt, coming, ON_THE_PLANE, out)
     return out
 
 

@@ -11,7 +11,7 @@ from elbowroom.body.gait.roll import straight_part
 from elbowroom.body.gait.stride import Stride
 from elbowroom.body.root import ROOT_STATE
 from elbowroom.by_reference import by_reference
-from elbowroom.jit import inner_exact_kernel
+from elbowroom.jit import inner_exact_kernel, plain
 
 Floats = NDArray[np.float64]
 
@@ -21,8 +21,12 @@ _CLOSED, _TURNED = 0.012, 0.05  # metres of a standard leg, radians: feet so nea
 _APART, _LONG = 0.13, 0.35  # metres of a standard leg: so far a foot keeps beside the other, if no farther ahead of it
 _TOES_IN = 0.4  # radians: toes of one foot point no farther across the other
 _DOWN = 0.14  # of a swing aside or round: so long it is over its place, and only comes down
+_SINKS, _LOWER = 0.3, 0.1  # of a swing in which a foot only comes down, where it lands so many metres lower, or more
 _BOUND, _BINDING = 0.75, 0.1  # of a swing: from then on a foot goes on to where it goes, more and more
 _MORE = 0.15  # m/s by which a stance may be longer than that of an even walk
+# Of each foot, how it lands where ground is not a plane: so many metres farther ahead, and so many below the other
+# foot, but for what falls evenly from there.
+FARTHER, LOWER = plain(0), plain(1)
 
 
 @by_reference
@@ -116,22 +120,33 @@ def landing_place(
 
 
 @inner_exact_kernel
-def way_over(stride: Stride) -> float:
-    """The part of a swing in which a foot goes over the ground: in steps aside and round it only comes down then."""
-    return 1.0 - _DOWN * (1.0 - straight_part(stride))
+def way_over(stride: Stride, lower: float) -> float:
+    """The part of a swing in which a foot goes over the ground; then it only comes down.
+
+    In steps aside and round, and where it lands so many metres lower, behind an edge.
+    """
+    aside = _DOWN * (1.0 - straight_part(stride))
+    return 1.0 - max(aside, _SINKS * min(max(lower, 0.0) / (_LOWER * stride.scale), 1.0))
+
+
+@inner_exact_kernel
+def time_over(foot: Floats, way: float, left: float) -> float:
+    """Seconds until a swinging foot that lands in `left` is over its place, after the part `way` of its swing."""
+    return float(left * max(way - foot[SWING], 0.0) / max(1.0 - foot[SWING], 1.0 - ALMOST))
 
 
 @inner_exact_kernel
 def bound_for(
-    own: OwnSteps, stride: Stride, side: int, foot: Floats, goal: tuple[float, float, float], left: float
+    own: OwnSteps, stride: Stride, side: int, foot: Floats, goal: tuple[float, float, float], left: float, way: float
 ) -> tuple[float, float, float]:
-    """Where a swinging foot lands in `left` seconds that should at a place (x, z, yaw): one that nearly has, where it
-    was going to, but for hardly a step's worth."""
+    """Where a swinging foot lands in `left` seconds that should at a place (x, z, yaw).
+
+    One that nearly has, where it was going to, but for hardly a step's worth. `way` is as in `way_over`.
+    """
     share = min(max((foot[SWING] - _BOUND) / _BINDING, 0.0), 1.0)
     if share <= 0.0:
         return goal
-    way = way_over(stride)
-    part, left = min(foot[SWING] / way, 1.0), left * max(way - foot[SWING], 0.0) / max(1.0 - foot[SWING], 1.0 - ALMOST)
+    part, left = min(foot[SWING] / way, 1.0), time_over(foot, way, left)
     ahead = left * (1.0 + 2.0 * part) / (6.0 * part)  # what is left of an even swing, at the speed that it has by then
     aside = own_detour(own, stride, side, part)
     x, z, yaw = (

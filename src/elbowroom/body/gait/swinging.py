@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.gait.foot_state import LIFT, LIFT_RATE, PITCH, SWING, VELOCITY, YAW, X, Z, land
-from elbowroom.body.gait.landing_places import ALMOST, beside_twin, way_over
+from elbowroom.body.gait.landing_places import ALMOST, beside_twin
 from elbowroom.body.gait.own_steps import OwnSteps, own_detour, own_roll
 from elbowroom.body.gait.roll import least_lift
 from elbowroom.body.gait.stepping_times import TURNING
@@ -56,16 +56,17 @@ def swing_foot(
     side: int,
     goal: tuple[float, float, float],
     times: tuple[float, float],
+    way: float,
     foot: Floats,
     twin: Floats,
 ) -> float:
     """Let a foot swing for so many seconds, so that it lands so many after their end; the pitch that it wants.
 
-    In steps aside and round it is over its place before it comes down: it would rub over the ground.
+    It is over its place after the part `way` of its swing, before it comes down: it would rub over the ground, in steps
+    aside and round, or over an edge.
     """
     (dt, left), done = times, foot[SWING]
     after = done + (1.0 - done) * dt / (left + dt)
-    way = way_over(stride)
     over, there = min(done / way, 1.0), min(after / way, 1.0)
     before, then = own_detour(own, stride, side, over), own_detour(own, stride, side, there)
     for i in range(3):

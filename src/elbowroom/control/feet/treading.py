@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from elbowroom.body.gait.foot_state import SWING, VELOCITY, YAW, X, Z, carry
 from elbowroom.body.gait.footholds import landing, step_feet
-from elbowroom.body.gait.landing_places import Stepper, landing_place
+from elbowroom.body.gait.landing_places import FARTHER, LOWER, Stepper, landing_place
 from elbowroom.body.gait.own_steps import own_stride_at
 from elbowroom.body.gait.stepping_times import time_to_landing
 from elbowroom.body.root import FOOT, HEIGHT, RISES, ROOT_STATE, WITH_FEET
@@ -23,12 +23,13 @@ from elbowroom.world.ground.swept import set_highest_under
 
 Floats = NDArray[np.float64]
 Place = tuple[float, float, float]  # x, z and yaw as seen from the root
-Landing = tuple[float, float, float, float]  # the same, and seconds until then
+Landing = tuple[float, float, float, float, float]  # the same, seconds until then, and until it is over that place
 Lie = tuple[float, float]  # height and slope of what a foot stands on or swings over
 
 _NONE = -math.inf
 _LEVEL, _TILTED = 0.002, 0.02  # metres, radians: so much is no step, and no other slope
 _LOOKS = 8  # places of the rest of a swing that are looked at
+_SOON = 1e-3  # seconds: who will be over his place so soon is there
 _NEAR = 1e-4  # m²: who is no farther from where a foot lands goes there as it comes
 HASTY, TURNS = 4.0, 4.0  # m/s that a foot rises or comes down by at most; radians that its sole may turn for a metre
 _RISING, _UP = 2.0, 3.0  # m/s that a foot is foreseen to rise by, and does
@@ -49,24 +50,27 @@ def _level_there(under: Underfoot, row: Floats, foot: Floats, goal: Place) -> fl
 
 
 @helper
-def _needed(under: Underfoot, row: Floats, foot: Floats, goal: Place, left: float, lands: float) -> float:
-    """How high a swinging foot has to be now to get over what is on its way to a goal, where it lands at a height.
+def _needed(under: Underfoot, row: Floats, foot: Floats, slope: float, goal: Landing, ends: Lie) -> float:
+    """How high a swinging foot has to be now to get over what is on its way to a goal, and how it `ends` there.
 
-    It goes there in the seconds that are `left`, as `footholds` has it.
+    It goes there in the seconds that are left, as `footholds` has it, and slopes so much now.
     """
+    (left, over_there), lands = goal[3:], ends[0]
     ground, (x, z), (to_x, to_z) = under.ground, in_world(row, foot[X], foot[Z]), in_world(row, goal[0], goal[1])
     near = height_along(ground, (row[0], under_body(ground, row[0], row[HEIGHT], row[1]), row[1]), x, z)
     near, wanted, shares, overs = near if near > _NONE else row[HEIGHT], _NONE, np.empty(_LOOKS), np.empty(_LOOKS)
     ahead, aside = goal[0] - foot[X], goal[1] - foot[Z]
-    faster = left * (ahead * foot[VELOCITY] + aside * foot[VELOCITY + 1]) / max(ahead * ahead + aside * aside, _NEAR)
+    faster = ahead * foot[VELOCITY] + aside * foot[VELOCITY + 1]
+    faster *= over_there / max(ahead * ahead + aside * aside, _NEAR)
     for k in range(_LOOKS):
-        u = k / _LOOKS
+        u = min(k / _LOOKS * left / max(over_there, _SOON), 1.0)
         shares[k] = min(max(u * u * (3.0 - 2.0 * u) + (1.0 - u) ** 2 * u * faster, 0.0), 1.0)
-    way = (x, z, row[2] + foot[YAW]), (to_x, to_z, row[2] + goal[2])
+    way = (x, z, row[2] + foot[YAW], slope), (to_x, to_z, row[2] + goal[2], ends[1])
     set_highest_under(ground, under.sole, way[0], way[1], near, shares, overs)
+    falls = max(overs[0] - lands, 0.0) if overs[0] > _NONE else 0.0
     for k in range(_LOOKS):
         if overs[k] > _NONE:
-            over = OVER * ground.step if overs[k] > lands + _LEVEL else 0.0
+            over = OVER * ground.step if overs[k] > lands + (1.0 - shares[k]) * falls + _LEVEL else 0.0
             wanted = max(wanted, overs[k] + over - _RISING * k / _LOOKS * left)
     return max(wanted, lands - _RISING * left)
 
@@ -81,7 +85,7 @@ def _swung(under: Underfoot, row: Floats, side: int, goal: Landing, was: Lie, dt
         lands, slope = stood_at(under.ground, under.sole, row, place[0], place[1], place[2])
     if lands == _NONE:
         return was
-    wanted = level if level > _NONE else _needed(under, row, foot, place, left, lands)
+    wanted = level if level > _NONE else _needed(under, row, foot, was[1], goal, (lands, slope))
     part = min(_EASE * dt / (left + dt), 1.0)
     change = wanted - was[0]
     height = was[0] + (min(change, _UP * dt) if change > 0.0 else max(part * change, -HASTY * dt))
@@ -105,42 +109,45 @@ def _settled(under: Underfoot, row: Floats, side: int, was: Lie, most: float) ->
 
 
 @helper
-def _bears(under: Underfoot, row: Floats, foot: Place, ball: float) -> tuple[bool, bool]:
-    """Whether a foot at a place would have ground under its ankle, and under its ball: not under its toes alone."""
+def _bears(under: Underfoot, row: Floats, foot: Place, ball: float) -> tuple[bool, bool, Lie]:
+    """Whether a foot at a place would have ground under its ankle, and under its ball: not under its toes alone.
+
+    And how it would lie.
+    """
     lies, slope = stood_at(under.ground, under.sole, row, foot[0], foot[1], foot[2])
     x, z = in_world(row, foot[0], foot[1])
     ankle = height_at(under.ground, x, z, lies)
     x, z = in_world(row, foot[0] + ball * math.sin(foot[2]), foot[1] + ball * math.cos(foot[2]))
     front = height_at(under.ground, x, z, lies) + ball * math.tan(slope)
-    return lies > _NONE and lies - ankle < _AIR, lies > _NONE and lies - front < _AIR
+    return lies > _NONE and lies - ankle < _AIR, lies > _NONE and lies - front < _AIR, (lies, slope)
 
 
 @inner_exact_kernel
-def _farther_onto(under: Underfoot, who: Stepper, row: Floats, side: int, goal: Place) -> float:
+def _farther_onto(under: Underfoot, who: Stepper, row: Floats, side: int, goal: Place) -> tuple[float, Lie]:
     """How much farther ahead a foot has to land so that it stands on a tread and not across its edge, metres.
 
     As little as possible. Where that is not had within a few centimetres it stands on its ball, over which it rolls;
-    0 where it does not do so either.
+    0 where it does not do so either. And how it lies there.
     """
-    ball, scale, onto_ball = who.legs[side, _BALL], who.scale, math.inf
+    ball, scale, onto_ball, lie = who.legs[side, _BALL], who.scale, math.inf, (_NONE, 0.0)
     for k in range(2 * _TRIED + 1):
         ahead = _SHIFT * scale * ((k + 1) // 2) * (1.0 if k % 2 == 0 else -1.0)
         x, z = goal[0] + ahead * math.sin(goal[2]), goal[1] + ahead * math.cos(goal[2])
-        heel, front = _bears(under, row, (x, z, goal[2]), ball)
+        heel, front, there = _bears(under, row, (x, z, goal[2]), ball)
         if heel and front:
-            return float(ahead)
-        if front and onto_ball == math.inf:
-            onto_ball = float(ahead)
-    return onto_ball if onto_ball < math.inf else 0.0
+            return float(ahead), there
+        if (front and onto_ball == math.inf) or k == 0:
+            onto_ball, lie = float(ahead) if front else math.inf, there
+    return onto_ball if onto_ball < math.inf else 0.0, lie
 
 
 @helper
-def _set_farther(
-    under: Underfoot, who: Stepper, before: Floats, root: Floats, coming: Floats, farther: Floats, later: Floats
+def _set_landings(
+    under: Underfoot, who: Stepper, before: Floats, root: Floats, coming: Floats, lands: Floats, later: Floats
 ) -> None:
-    """Set how much farther ahead feet that swing have to land (2,) under a root state, on after the row `before`.
+    """Set how feet that swing land (2, 2) under a root state, on after the row `before`: as `step_feet` takes it.
 
-    Than they are meant to: one that is bound for a place already has been told, and goes where it was going.
+    One that is bound for a place already has been told, and goes where it was going.
     """
     row, legs, scale, own = np.empty(WITH_FEET), who.legs, who.scale, who.own
     stride = own_stride_at(own, scale, root)
@@ -148,11 +155,14 @@ def _set_farther(
     for side in range(2):
         foot = row[ROOT_STATE + FOOT * side :]
         if foot[SWING] > 0.0:
-            twin = row[ROOT_STATE + FOOT * (1 - side) :]
+            twin, at = row[ROOT_STATE + FOOT * (1 - side) :], RISES + 2 * (1 - side)
             left = max(time_to_landing(own, legs, stride, side, row, foot, twin, 0.0), 0.0)
             x, z, yaw = landing_place(who, side, row, twin, coming, left, 0.0, later)
             if _level_there(under, row, foot, (x, z, yaw)) == _NONE:
-                farther[side] = _farther_onto(under, who, row, side, (x, z, yaw))
+                lands[side, FARTHER], (height, slope) = _farther_onto(under, who, row, side, (x, z, yaw))
+                apart = math.hypot(x - twin[X], z - twin[Z])
+                falls = before[at] + before[HEIGHT] - height - math.tan(max(slope, 0.0)) * apart
+                lands[side, LOWER] = falls if height > _NONE else 0.0
 
 
 @inner_exact_kernel
@@ -164,15 +174,15 @@ def step_on(
     To `out` (WITH_FEET or more,). On the plane that is all of it; elsewhere feet that would land across an edge land a
     little farther ahead or back.
     """
-    farther, later = np.zeros(2), np.empty(ROOT_STATE)
+    lands, later = np.zeros((2, 2)), np.empty(ROOT_STATE)
     if not under.ground.plain and dt > 0.0:
-        _set_farther(under, who, before, root, coming, farther, later)
-    step_feet(who, before, root, dt, coming, farther, out[:WITH_FEET])
+        _set_landings(under, who, before, root, coming, lands, later)
+    step_feet(who, before, root, dt, coming, lands, out[:WITH_FEET])
     for side in range(0 if under.ground.plain else 2):
         at, swing = RISES + 2 * side, ROOT_STATE + FOOT * side + SWING
         height, slope = before[at] + before[HEIGHT], before[at + 1]
         if dt > 0.0 and out[swing] > 0.0:
-            goal = landing(who, out, side, coming, farther, later)
+            goal = landing(who, out, side, coming, lands, later)
             height, slope = _swung(under, out, side, goal, (height, slope), dt)
         elif dt > 0.0:
             height, slope = _settled(under, out, side, (height, slope), HASTY * dt)

@@ -244,7 +244,7 @@ def _swung(ground: Ground, sole: Sole, root: Floats, places: Floats, w: float) -
     rise, lacks, overs = end - begin, 0.0, np.empty(_TIMES.shape[0])
     above, (x, z) = max(rise, 0.0), in_world(root, places[0], places[1])
     to_x, to_z = in_world(root, places[3], places[4])
-    way = (x, z, root[2] + places[2]), (to_x, to_z, root[2] + places[5])
+    way = (x, z, root[2] + places[2], first), (to_x, to_z, root[2] + places[5], last)
     set_highest_under(ground, sole, way[0], way[1], begin, _GONE, overs)
     for k in range(overs.shape[0]):
         overs[k] -= begin

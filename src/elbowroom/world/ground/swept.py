@@ -1,4 +1,6 @@
-"""The highest ground under a sole on its way from one place to another, for kernels: what a swinging foot goes over.
+"""How high ground holds a sole on its way from one place to another, for kernels: what a swinging foot goes over.
+
+A sole that is as steep as the slope that it goes along is held no higher than where it would lie on it.
 
 All that a sole is over on a straight way, turning as it goes, lies in a strip. The ground is looked at once at the
 places of a grid over the strip; which of these are under the sole is told at any part of the way.
@@ -14,7 +16,10 @@ from elbowroom.world.ground.ground import Ground, firm_at
 from elbowroom.world.ground.sole import Sole
 
 Floats = NDArray[np.float64]
-Spot = tuple[float, float, float]  # x, z and yaw of a foot's ankle
+Spot = tuple[float, float, float, float]  # x, z and yaw of a foot's ankle, and how its sole slopes, as `sole_on`
+
+Lie = tuple[float, float]  # how far a sole is turned from its course, and how it slopes
+Course = tuple[float, float, float]  # the x and z where it begins, and where it leads, as a yaw
 
 _NONE = -math.inf
 _ALONG, _ACROSS = 0.02, 0.05  # metres between places of the grid, at most
@@ -37,7 +42,7 @@ def _evenly(low: float, high: float, most: float) -> Floats:
 
 
 @helper
-def _look(ground: Ground, begin: Spot, near: float, along: Floats, across: Floats, found: Floats) -> None:
+def _look(ground: Ground, begin: Course, near: float, along: Floats, across: Floats, found: Floats) -> None:
     """Set the ground `found` (R, C) at places so far `along` a course (R,) from a beginning, and `across` to its left.
 
     From the row of the beginning, where ground is about `near`, each column is followed step by step on, and back.
@@ -56,17 +61,17 @@ def _look(ground: Ground, begin: Spot, near: float, along: Floats, across: Float
 
 
 @helper
-def _highest(sole: Sole, gone: float, turned: float, along: Floats, across: Floats, found: Floats) -> float:
-    """The highest of the ground `found` (R, C) under a sole that has gone so far, and is `turned` from its course."""
+def _highest(sole: Sole, gone: float, lie: Lie, along: Floats, across: Floats, found: Floats) -> float:
+    """How high the ground `found` (R, C) holds a sole under its ankle that has gone so far, and how it lies there."""
+    turned, grade = lie[0], math.tan(lie[1])
     sine, cosine, highest = math.sin(turned), math.cos(turned), _NONE
     low, high = _reach(sole, turned)
     for i in range(along.shape[0]):
         ahead = along[i] - gone
         for j in range(across.shape[0] if low - _EDGE <= ahead <= high + _EDGE else 0):
-            if found[i, j] > highest:
-                before, aside = ahead * cosine + across[j] * sine, across[j] * cosine - ahead * sine
-                if -sole.back - _EDGE <= before <= sole.ahead + _EDGE and abs(aside) <= sole.aside + _EDGE:
-                    highest = found[i, j]
+            before, aside = ahead * cosine + across[j] * sine, across[j] * cosine - ahead * sine
+            if abs(aside) <= sole.aside + _EDGE and -sole.back - _EDGE <= before <= sole.ahead + _EDGE:
+                highest = max(highest, found[i, j] + grade * before)
     return highest
 
 
@@ -74,9 +79,10 @@ def _highest(sole: Sole, gone: float, turned: float, along: Floats, across: Floa
 def set_highest_under(
     ground: Ground, sole: Sole, begin: Spot, end: Spot, near: float, shares: Floats, out: Floats
 ) -> None:
-    """Set how high the ground under a sole is, `out` (K,), at `shares` (K,) of its way; minus infinity without any.
+    """Set how high the ground holds a sole under its ankle, `out` (K,), at `shares` (K,) of its way.
 
-    Where it begins the ground is about `near`.
+    Minus infinity where there is none under it. Where it begins the ground is about `near`. It turns evenly from how it
+    lies at the beginning to how it does at the end.
     """
     dx, dz = end[0] - begin[0], end[1] - begin[1]
     length = math.sqrt(dx * dx + dz * dz)
@@ -89,4 +95,5 @@ def set_highest_under(
     found = np.empty((along.shape[0], across.shape[0]))
     _look(ground, (begin[0], begin[1], course), near, along, across, found)
     for k in range(shares.shape[0]):
-        out[k] = _highest(sole, shares[k] * length, first + shares[k] * (last - first), along, across, found)
+        lie = first + shares[k] * (last - first), begin[3] + shares[k] * (end[3] - begin[3])
+        out[k] = _highest(sole, shares[k] * length, lie, along, across, found)
