@@ -155,32 +155,50 @@ def firm_at(ground: Ground, x: float, z: float, near: float) -> float:
     return _highest(ground, x, z, near, FIRM)
 
 
+@helper
+def _even_in(ground: Ground, ix: int, iz: int, about: float, within: float) -> float:
+    """The even height of a cell that is so near to another one; minus infinity without any."""
+    found = _NONE
+    if 0 <= ix < ground.shape[0] and 0 <= iz < ground.shape[1]:
+        cell = ix * ground.shape[1] + iz
+        for e in range(ground.even_starts[cell], ground.even_starts[cell + 1]):
+            if abs(ground.evens[e] - about) <= within:
+                found = ground.evens[e]
+    elif ground.beyond and abs(about) <= within:
+        found = 0.0
+    return found
+
+
+@exact_kernel
+def level_over(
+    ground: Ground, place: tuple[float, float], course: float, half: tuple[float, float], near: float
+) -> float:
+    """The top of the ground if it is level in a rectangle about a place (x, z), about the height `near`.
+
+    It lies along a course, which is a yaw, and is twice `half` as long and as wide. Ground may lie lower by `RELIEF` in
+    a cell, and by so much more from cell to cell. Minus infinity where it is not level, or that is not known.
+    """
+    sine, cosine, (along, across) = math.sin(course), math.cos(course), half
+    x, z, spare = place[0] - ground.corner[0], place[1] - ground.corner[1], abs(sine) + abs(cosine)
+    wide, deep = along * abs(sine) + across * abs(cosine), along * abs(cosine) + across * abs(sine)
+    along, across = along + 0.5 * ground.cell * spare, across + 0.5 * ground.cell * spare
+    found, lowest = _NONE, math.inf
+    for ix in range(math.floor((x - wide) / ground.cell), math.floor((x + wide) / ground.cell) + 1):
+        for iz in range(math.floor((z - deep) / ground.cell), math.floor((z + deep) / ground.cell) + 1):
+            dx, dz = ground.cell * (ix + 0.5) - x, ground.cell * (iz + 0.5) - z
+            if abs(dx * sine + dz * cosine) <= along and abs(dx * cosine - dz * sine) <= across:
+                within = RELIEF if found > _NONE else _ABOUT
+                here = _even_in(ground, ix, iz, near if found == _NONE else found, within)
+                lowest, found = min(lowest, here), max(found, here)
+                if found - lowest > RELIEF or here == _NONE:
+                    return _NONE
+    return found
+
+
 @exact_kernel
 def level_about(ground: Ground, x: float, z: float, reach: float, near: float) -> float:
-    """The top of the ground if it is level as far as `reach` metres from a place, about the height `near`.
-
-    It may lie lower by `RELIEF` in a cell, and by so much more from cell to cell. Minus infinity where it is not level,
-    or that is not known.
-    """
-    left, back = x - ground.corner[0], z - ground.corner[1]
-    low_x, high_x = math.floor((left - reach) / ground.cell), math.floor((left + reach) / ground.cell)
-    low_z, high_z = math.floor((back - reach) / ground.cell), math.floor((back + reach) / ground.cell)
-    found, lowest = _NONE, math.inf
-    for ix in range(int(low_x), int(high_x) + 1):
-        for iz in range(int(low_z), int(high_z) + 1):
-            here, about = _NONE, near if found == _NONE else found
-            within = RELIEF if found > _NONE else _ABOUT
-            if 0 <= ix < ground.shape[0] and 0 <= iz < ground.shape[1]:
-                cell = ix * ground.shape[1] + iz
-                for e in range(ground.even_starts[cell], ground.even_starts[cell + 1]):
-                    if abs(ground.evens[e] - about) <= within:
-                        here = ground.evens[e]
-            elif ground.beyond and abs(about) <= within:
-                here = 0.0
-            lowest, found = min(lowest, here), max(found, here)
-            if found - lowest > RELIEF:
-                return _NONE
-    return found
+    """The same as far as `reach` metres from a place along x and z."""
+    return level_over(ground, (x, z), 0.0, (reach, reach), near)
 
 
 @exact_kernel

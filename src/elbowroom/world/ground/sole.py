@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from elbowroom.jit import exact_kernel, helper, plain
 from elbowroom.world.clipping import clipped
-from elbowroom.world.ground.ground import FIRM, SPANS, STEEPEST, Ground, firm_at, first_within
+from elbowroom.world.ground.ground import FIRM, SPANS, STEEPEST, Ground, firm_at, first_within, level_over
 
 Floats = NDArray[np.float64]
 Longs = NDArray[np.int64]
@@ -67,7 +67,7 @@ def _may_rise(triangles: Floats, t: int, at: _Spot, grade: float, best: float, s
 
     That is how far ahead and aside of the ankle they are, and how high.
     """
-    rises, back, ahead, left, right = _NONE, math.inf, _NONE, math.inf, _NONE
+    rises, top, back, ahead, left, right = _NONE, _NONE, math.inf, _NONE, math.inf, _NONE
     for i, c in enumerate((0, 3, 5)):
         x, z = triangles[t, c], triangles[t, c + 1]
         height = triangles[t, 2] + triangles[t, 7] * (x - triangles[t, 0]) + triangles[t, 8] * (z - triangles[t, 1])
@@ -75,8 +75,9 @@ def _may_rise(triangles: Floats, t: int, at: _Spot, grade: float, best: float, s
         aside = (x - at.x) * at.cosine - (z - at.z) * at.sine
         seen[i, _AHEAD], seen[i, _HEIGHT], seen[i, _ASIDE] = along, height, aside
         back, ahead, left, right = min(back, along), max(ahead, along), min(left, aside), max(right, aside)
-        rises = max(rises, height - grade * along)
+        rises, top = max(rises, height - grade * along), max(top, height)
     sole = at.sole
+    rises = min(rises, top - min(grade * max(back, -sole.back), grade * min(ahead, sole.ahead)))
     beside = back > sole.ahead or ahead < -sole.back or left > sole.aside or right < -sole.aside
     return rises > best + _SLIGHT and not beside
 
@@ -148,8 +149,12 @@ def sole_on(ground: Ground, sole: Sole, place: tuple[float, float, float], yaw: 
     """
     if ground.plain:
         return 0.0, 0.0
-    sine, cosine, highest, nears = math.sin(yaw), math.cos(yaw), np.empty(_ALONG), np.empty(_ALONG)
-    at = _Spot(sole, place[0], place[2], sine, cosine)
+    sine, cosine, middle = math.sin(yaw), math.cos(yaw), 0.5 * (sole.ahead - sole.back)
+    half = 0.5 * (sole.back + sole.ahead), sole.aside
+    even = level_over(ground, (place[0] + middle * sine, place[2] + middle * cosine), yaw, half, place[1])
+    if even > _NONE:
+        return even, 0.0
+    at, highest, nears = _Spot(sole, place[0], place[2], sine, cosine), np.empty(_ALONG), np.empty(_ALONG)
     length, ankle = sole.back + sole.ahead, int(sole.back / (sole.back + sole.ahead) * (_ALONG - 1) + 0.5)
     near = place[1]
     for k in range(_ALONG):
@@ -171,10 +176,11 @@ def sole_on(ground: Ground, sole: Sole, place: tuple[float, float, float], yaw: 
         tilted = max(tilted, highest[i] - grade * (length * i / (_ALONG - 1) - sole.back))
     if level == _NONE:
         return level, 0.0
-    tilted = _highest_under(ground, at, nears, grade, tilted)
-    air = 0.0
+    lowest = math.inf
     for i in range(_ALONG):
-        air = max(air, tilted + grade * (length * i / (_ALONG - 1) - sole.back) - highest[i])
-    if abs(grade) > _GRADE or air > _UNEVEN:
-        return _highest_under(ground, at, nears, 0.0, level), 0.0
-    return tilted, -math.atan(grade)
+        lowest = min(lowest, highest[i] - grade * (length * i / (_ALONG - 1) - sole.back))
+    if abs(grade) <= _GRADE and tilted - lowest <= _UNEVEN:
+        tilted = _highest_under(ground, at, nears, grade, tilted)
+        if tilted - lowest <= _UNEVEN:
+            return tilted, -math.atan(grade)
+    return _highest_under(ground, at, nears, 0.0, level), 0.0

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.jit import helper, inner_exact_kernel
-from elbowroom.world.ground.ground import Ground, firm_at
+from elbowroom.world.ground.ground import Ground, firm_at, level_over
 from elbowroom.world.ground.sole import Sole
 
 Floats = NDArray[np.float64]
@@ -24,6 +24,7 @@ Course = tuple[float, float, float]  # the x and z where it begins, and where it
 _NONE = -math.inf
 _ALONG, _ACROSS = 0.02, 0.05  # metres between places of the grid, at most
 _SHORT = 0.01  # metres: who goes no farther turns on the spot
+_UPRIGHT = 1e-6  # radians: a level sole
 _EDGE = 1e-6  # metres by which a place may be beside a sole
 
 
@@ -89,9 +90,18 @@ def set_highest_under(
     course = math.atan2(dx, dz) if length > _SHORT else begin[2]
     first, last = begin[2] - course, end[2] - course
     one, other = _reach(sole, first), _reach(sole, last)
-    along = _evenly(min(one[0], other[0]), length + max(one[1], other[1]), _ALONG)
+    back, ahead = min(one[0], other[0]), length + max(one[1], other[1])
     one, other = _reach(sole, first - 0.5 * math.pi), _reach(sole, last - 0.5 * math.pi)
-    across = _evenly(min(one[0], other[0]), max(one[1], other[1]), _ACROSS)
+    right, left = min(one[0], other[0]), max(one[1], other[1])
+    if max(abs(begin[3]), abs(end[3])) < _UPRIGHT:
+        half, middle, beside = (0.5 * (ahead - back), 0.5 * (left - right)), 0.5 * (ahead + back), 0.5 * (left + right)
+        sine, cosine = math.sin(course), math.cos(course)
+        there = begin[0] + middle * sine + beside * cosine, begin[1] + middle * cosine - beside * sine
+        even = level_over(ground, there, course, half, near)
+        if even > _NONE:
+            out[:] = even
+            return
+    along, across = _evenly(back, ahead, _ALONG), _evenly(right, left, _ACROSS)
     found = np.empty((along.shape[0], across.shape[0]))
     _look(ground, (begin[0], begin[1], course), near, along, across, found)
     for k in range(shares.shape[0]):
