@@ -20,8 +20,11 @@ from elbowroom.planning.root.motion import MotionBounds, dense_states, stopping_
 Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
 Longs = NDArray[np.int64]
+Bools = NDArray[np.bool_]
 
 _SWING = 4.0  # times as fast as the root goes no part of a leg moves
+_TOGETHER = 4  # key intervals, or stops, that are looked at together: most of the cost is not in the states
+_STOPS, _IN_NONE = 1, -1
 _SPAN = 6  # samples from one to the next that is looked at first
 UNKNOWN: Any = np.float32(np.nan)  # room that was not looked at
 _ENDLESS: Any = np.float32(np.inf)
@@ -47,31 +50,60 @@ def free_part(
     And that of the states that legs were posed in. `known` (2, n) is the least room in key intervals and in stops, or
     `UNKNOWN`: what was looked at is written there.
     """
-    bounds, kept, posed, before = how.bounds, states.shape[0] - 1, 0, UNKNOWN
+    bounds, free, posed, before = how.bounds, states.shape[0] - 1, 0, UNKNOWN
     moving, stopping = to_check(
         states, interval, bounds.braking, bounds.turn_acceleration, how.skin, how.hull, among.ground
     )
-    step, one = how.spacing * _fastest(states, how.legs.reach), np.ones(1, np.bool_)
-    for k in range(kept):
-        looked = moving[k] and np.isnan(known[0, k])
-        if looked:
-            rows, _ = dense_states(states[k : k + 2], interval, how.spacing, one)
-            known[0, k], last, count = _least_room(how, among, _with_first(states[k], rows), step, before)
-            before, posed = last, posed + count
-        else:
-            before = UNKNOWN
-        if moving[k] and known[0, k] < skin:
-            kept = k
-            break
-    for k in range(kept):
-        if stopping[k] and np.isnan(known[1, k]):
-            rows, _ = stopping_states(states[k : k + 2], interval, bounds, how.spacing, one)
-            known[1, k], _, count = _least_room(how, among, _with_first(states[k + 1], rows), step, UNKNOWN)
-            posed += count
-        if stopping[k] and known[1, k] < skin:
-            kept = k
-            break
-    return kept, posed
+    step = how.spacing * _fastest(states, how.legs.reach)
+    for kind, asked in enumerate((moving, stopping)):
+        k, before = 0, UNKNOWN
+        while k < free:
+            last = _together(asked, known[kind], k, free)
+            if last > k:
+                rows, owner = _shown(how, states[k : last + 1], interval, kind == _STOPS)
+                room = np.full(rows.shape[0], UNKNOWN)
+                room[0] = before
+                posed += _least_rooms(how, among, rows, owner, (step, skin), room, known[kind, k:last])
+                before = UNKNOWN if kind == _STOPS else room[-1]
+            else:
+                last, before = k + 1, UNKNOWN
+            while k < last and not (asked[k] and known[kind, k] < skin):
+                k += 1
+            free = k if k < last else free
+    return free, posed
+
+
+@helper
+def _together(asked: Bools, known: Floats32, first: int, end: int) -> int:
+    """Up to where parts of a path are looked at together, from one of them on; as far as that where it is not."""
+    last = first
+    while last < end and last - first < _TOGETHER and asked[last] and np.isnan(known[last]):
+        last += 1
+    return last
+
+
+@inner_exact_kernel
+def _shown(how: Looks, states: Floats, interval: float, stops: bool) -> tuple[Floats, Longs]:
+    """The states (M, 7) that are shown in key intervals, or in stops from their ends, and in which of them (M,).
+
+    A way on which one goes from state to state begins with one that is in none, -1.
+    """
+    count = states.shape[0] - 1
+    every = np.ones(count, np.bool_)
+    if stops:
+        shown, keys = stopping_states(states, interval, how.bounds, how.spacing, every)
+    else:
+        shown, keys = dense_states(states, interval, how.spacing, every)
+    ways = count if stops else 1
+    rows, owner, used = np.empty((shown.shape[0] + ways, states.shape[1])), np.empty(shown.shape[0] + ways, np.int64), 0
+    for way in range(ways):
+        rows[used], owner[used] = states[way + 1] if stops else states[0], _IN_NONE
+        used += 1
+        for n in range(shown.shape[0]):
+            if not stops or keys[n] == way + 1:
+                rows[used], owner[used] = shown[n], keys[n] - 1
+                used += 1
+    return rows, owner
 
 
 @helper
@@ -85,41 +117,49 @@ def _fastest(states: Floats, reach: float) -> float:
 
 
 @inner_exact_kernel
-def _with_first(first: Floats, rows: Floats) -> Floats:
-    """A state (7,) and those that follow it (M, 7)."""
-    joined = np.empty((rows.shape[0] + 1, rows.shape[1]))
-    joined[0], joined[1:] = first, rows
-    return joined
+def _least_rooms(
+    how: Looks,
+    among: Neighbours,
+    rows: Floats,
+    owner: Longs,
+    asked: tuple[float, float],
+    room: Floats32,
+    least: Floats32,
+) -> int:
+    """Write the least room in each of some parts of a path, `least` (n,), up to the first that has less than is asked.
 
-
-@inner_exact_kernel
-def _least_room(how: Looks, among: Neighbours, rows: Floats, step: float, before: float) -> tuple[float, float, int]:
-    """The least room in states (M+1, 7) but the first, that in the last of them, and how many of them were posed.
-
-    From one to the next no part of a leg goes farther than `step` metres; `before` is the room in the first, if that is
-    known.
+    They are shown in states (M, 7), as `_shown` has them. `asked` are the metres that a part of a leg goes from one to
+    the next, at most, and those of room. What is in them, `room` (M,), is written where it is looked at, and not looked
+    at where it is known. Returns how many states were posed.
     """
-    last, posed = rows.shape[0] - 1, 0
-    room, at = np.full(last + 1, UNKNOWN), np.empty(last + 1, np.int64)
-    begin, end, spans, fresh = np.empty(last + 1, np.int64), np.empty(last + 1, np.int64), 0, 0
-    room[0] = before
-    for i in range(0, last, _SPAN):
-        begin[spans], end[spans] = i, min(i + _SPAN, last)
-        spans += 1
-    if np.isnan(before):
-        at[0], fresh = 0, 1
-    for i in range(spans):
-        at[fresh] = end[i]
-        fresh += 1
-    reached, least = step * _SPAN, _ENDLESS
+    count, posed, (step, skin) = rows.shape[0], 0, asked
+    begin, end, at = np.empty(count, np.int64), np.empty(count, np.int64), np.empty(count, np.int64)
+    spans, fresh, found = 0, 0, np.full(least.shape[0], _ENDLESS)
+    for i in range(count):
+        if owner[i] == _IN_NONE:
+            spans_begin = i
+        ends = i + 1 == count or owner[i + 1] != owner[i]
+        if owner[i] != _IN_NONE and (ends or i - spans_begin == _SPAN):
+            begin[spans], end[spans] = spans_begin, i
+            spans, spans_begin = spans + 1, i
+        if np.isnan(room[i]) and (owner[i] == _IN_NONE or spans_begin == i):
+            at[fresh] = i
+            fresh += 1
+    reached, blocked = step * _SPAN, least.shape[0]
     while fresh > 0:
         _look(how, among, rows, at[:fresh], how.skin + reached, room)
         posed += fresh
         for i in range(fresh):
-            least = min(least, room[at[i]]) if at[i] > 0 else least
+            part = owner[at[i]]
+            if part != _IN_NONE:
+                found[part] = min(found[part], room[at[i]])
+                blocked = min(blocked, part) if found[part] < skin else blocked
         spans, fresh = _narrowed(room, begin, end, spans, step, how.skin, at)
+        while fresh > 0 and owner[at[fresh - 1]] > blocked:
+            spans, fresh = spans - 2, fresh - 1
         reached *= 0.5
-    return least, room[last], posed
+    least[: blocked + 1] = found[: blocked + 1]
+    return posed
 
 
 @helper

@@ -110,7 +110,14 @@ class FreeLegs:
             return len(states) - 1
         check = self._check
         known, names = check.known.recalled(self._interval, states)
-        kept, posed = free_part(check.looks, self._near, states, self._interval, self._skin, known)
+        kept, posed = free_part(check.looks, self._along(states), states, self._interval, self._skin, known)
         check.known.learn(names, known)
         self.checks += posed
         return kept
+
+    def _along(self, states: Floats) -> Neighbours:
+        """Those that legs may come to on a path (n+1, 7), and in a stop from anywhere on it."""
+        body, speed = self._check.body, float(np.hypot(states[:, 3], states[:, 4]).max())
+        stop = 0.5 * speed * speed / self._check.bounds.braking + speed * self._interval
+        low, high = body.footing.heights(states)
+        return self._near.around(states[:, :2], body.reach + self._check.skin + stop, (low - stop, high + stop))

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from elbowroom.by_reference import by_reference
 from elbowroom.planning.root.legs.hull import Ground, joined_ground, some_ground
 from elbowroom.world.obstacles.layout import Nearby
+from elbowroom.world.obstacles.obstacles import EVERY_HEIGHT, Span
 from elbowroom.world.obstacles.rows import is_empty, joined, some_of
 
 Floats = NDArray[np.float64]
@@ -26,10 +27,12 @@ class Neighbours(NamedTuple):
         """Whether there is nothing."""
         return is_empty(self.obstacles)
 
-    def around(self, places: Floats, reach: float) -> "Neighbours":
-        """Those that may come within `reach` metres of one of `places` (N, 2)."""
-        low, high = places.min(axis=0) - reach, places.max(axis=0) + reach
-        near = np.all((self.ground.least <= high) & (self.ground.most >= low), axis=1)
+    def around(self, places: Floats, reach: float, heights: Span = EVERY_HEIGHT) -> "Neighbours":
+        """Those that may come within `reach` metres of one of `places` (N, 2), at some of these heights."""
+        ground, (low_x, low_z), (high_x, high_z) = self.ground, places.min(axis=0) - reach, places.max(axis=0) + reach
+        near = (ground.least[:, 0] <= high_x) & (ground.most[:, 0] >= low_x)
+        near &= (ground.least[:, 1] <= high_z) & (ground.most[:, 1] >= low_z)
+        near &= (ground.heights[:, 0] <= heights[1]) & (ground.heights[:, 1] >= heights[0])
         if near.all():
             return self
         return Neighbours(some_of(self.obstacles, near), some_ground(self.ground, near))
