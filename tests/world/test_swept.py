@@ -15,7 +15,7 @@ from elbowroom.world.scene import Scene
 Floats = NDArray[np.float64]
 
 SOLE = Sole(0.12, 0.24, 0.05)
-BETWEEN = 0.028  # metres: no place is farther from one that is looked at
+BETWEEN = 0.037  # metres: no place is farther from one that is looked at
 SHARES = np.linspace(0.0, 1.0, 7)
 LOW = [(0.0, 0.2 * n, 3.0, 0.2, 0.08 * n) for n in range(1, 4)]  # x, z, sizes and top of some steps and posts
 LOW += [(-0.3 * n, 0.1 * n, 0.12, 0.12, 0.2) for n in range(1, 4)]

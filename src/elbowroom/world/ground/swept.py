@@ -22,7 +22,7 @@ Lie = tuple[float, float]  # how far a sole is turned from its course, and how i
 Course = tuple[float, float, float]  # the x and z where it begins, and where it leads, as a yaw
 
 _NONE = -math.inf
-_ALONG, _ACROSS = 0.02, 0.05  # metres between places of the grid, at most
+_ALONG, _ACROSS = 0.025, 0.07  # metres between places of the grid, at most
 _SHORT = 0.01  # metres: who goes no farther turns on the spot
 _UPRIGHT = 1e-6  # radians: a level sole
 _EDGE = 1e-6  # metres by which a place may be beside a sole
