@@ -169,7 +169,7 @@ def _even_in(ground: Ground, ix: int, iz: int, about: float, within: float) -> f
     return found
 
 
-@exact_kernel
+@inner_exact_kernel
 def level_over(
     ground: Ground, place: tuple[float, float], course: float, half: tuple[float, float], near: float
 ) -> float:

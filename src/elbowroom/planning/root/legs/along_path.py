@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.by_reference import by_reference
-from elbowroom.jit import exact_kernel, helper, inner_exact_kernel
+from elbowroom.jit import exact_kernel, helper
 from elbowroom.planning.root.legs.hull import StrideHull, to_check
 from elbowroom.planning.root.legs.neighbours import Neighbours
 from elbowroom.planning.root.legs.room_of_legs import Legs, room_at
@@ -82,7 +82,7 @@ def _together(asked: Bools, known: Floats32, first: int, end: int) -> int:
     return last
 
 
-@inner_exact_kernel
+@helper
 def _shown(how: Looks, states: Floats, interval: float, stops: bool) -> tuple[Floats, Longs]:
     """The states (M, 7) that are shown in key intervals, or in stops from their ends, and in which of them (M,).
 
@@ -116,7 +116,7 @@ def _fastest(states: Floats, reach: float) -> float:
     return _SWING * (forward + lateral) + reach * turn
 
 
-@inner_exact_kernel
+@helper
 def _least_rooms(
     how: Looks,
     among: Neighbours,
