@@ -14,8 +14,9 @@ Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
 
 # Places of a foot's numbers: x, z, yaw of the flat foot in the root's frame, pitch, lift above the ground, how much of
-# its swing is over (0: it stands), and the velocity of x, z and yaw over the ground, in the axes of the root.
-X, Z, YAW, PITCH, LIFT, SWING, VELOCITY = 0, 1, 2, 3, 4, 5, 6
+# its swing is over (0: it stands), the velocity of x, z and yaw over the ground, in the axes of the root, and how fast
+# what it stands on or swings over rises.
+X, Z, YAW, PITCH, LIFT, SWING, VELOCITY, RISING = 0, 1, 2, 3, 4, 5, 6, 9
 
 FLAT = 1e-9  # radians, metres
 LIFT_RATE = 1.5  # m/s: no foot is lifted or lowered faster; a recorded one is
@@ -64,7 +65,7 @@ def is_flat(foot: Floats) -> bool:
 @inner_exact_kernel
 def land(foot: Floats) -> None:
     """Let a foot stand where it is."""
-    foot[SWING] = foot[LIFT] = 0.0
+    foot[SWING] = foot[LIFT] = foot[RISING] = 0.0
     for i in range(3):
         foot[VELOCITY + i] = 0.0
 

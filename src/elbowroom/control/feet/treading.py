@@ -10,7 +10,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.body.gait.foot_state import SWING, VELOCITY, YAW, X, Z, carry
+from elbowroom.body.gait.foot_state import RISING, SWING, VELOCITY, YAW, X, Z, carry
 from elbowroom.body.gait.footholds import landing, step_feet
 from elbowroom.body.gait.landing_places import FARTHER, LOWER, Stepper, landing_place
 from elbowroom.body.gait.own_steps import own_stride_at
@@ -32,8 +32,9 @@ _LOOKS = 8  # places of the rest of a swing that are looked at
 _SOON = 1e-3  # seconds: who will be over his place so soon is there
 _NEAR = 1e-4  # m²: who is no farther from where a foot lands goes there as it comes
 HASTY, TURNS = 4.0, 4.0  # m/s that a foot rises or comes down by at most; radians that its sole may turn for a metre
-_RISING, _UP = 2.0, 3.0  # m/s that a foot is foreseen to rise by, and does
-_EASE = 2.0  # how much faster than evenly it comes down: the power of the time that is left
+_UP, _SPURT = 3.0, 45.0  # m/s that a foot rises by at most, and m/s² by which that changes
+_SLIGHT = 1e-3  # metres: what a foot comes against by less is not gone over
+_EASE = 2.0  # how much faster than evenly a sole is tilted: the power of the time that is left
 _AIR, _SHIFT, _TRIED = 0.02, 0.015, 8  # metres under ankle and ball; metres by which a foot lands elsewhere, so often
 _BALL = 6  # column of `GaitShape.legs`
 
@@ -50,34 +51,49 @@ def _level_there(under: Underfoot, row: Floats, foot: Floats, goal: Place) -> fl
 
 
 @helper
-def _needed(under: Underfoot, row: Floats, foot: Floats, slope: float, goal: Landing, ends: Lie) -> float:
-    """How high a swinging foot has to be now to get over what is on its way to a goal, and how it `ends` there.
+def _towards(lie: Lie, goal: float, time: float, after: float) -> float:
+    """How high a foot is `after` some seconds that comes to rest at a height in `time`: a cubic; `lie` is height, rate.
 
-    It goes there in the seconds that are left, as `footholds` has it, and slopes so much now.
+    Without a jump of its velocity.
     """
-    (left, over_there), lands = goal[3:], ends[0]
+    part = min(after / time, 1.0)
+    rest = 1.0 - part
+    return rest * rest * ((1.0 + 2.0 * part) * lie[0] + part * lie[1] * time) + part * part * (3.0 - 2.0 * part) * goal
+
+
+@helper
+def _needed(
+    under: Underfoot, row: Floats, foot: Floats, was: Lie, goal: Landing, ends: Lie, dt: float
+) -> tuple[float, float]:
+    """How high a swinging foot goes on that `was` so high and sloped so much `dt` seconds ago, and how high it has to.
+
+    It goes to where it `ends`, as `footholds` has it, smoothly, and over what it would come against on its way there.
+    """
     ground, (x, z), (to_x, to_z) = under.ground, in_world(row, foot[X], foot[Z]), in_world(row, goal[0], goal[1])
+    (left, over_there), lands, rising = goal[3:], ends[0], (was[0], foot[RISING])
     near = height_along(ground, (row[0], under_body(ground, row[0], row[HEIGHT], row[1]), row[1]), x, z)
-    near, wanted, shares, overs = near if near > _NONE else row[HEIGHT], _NONE, np.empty(_LOOKS), np.empty(_LOOKS)
+    near, shares, overs = near if near > _NONE else row[HEIGHT], np.empty(_LOOKS), np.empty(_LOOKS)
     ahead, aside = goal[0] - foot[X], goal[1] - foot[Z]
     faster = ahead * foot[VELOCITY] + aside * foot[VELOCITY + 1]
     faster *= over_there / max(ahead * ahead + aside * aside, _NEAR)
     for k in range(_LOOKS):
         u = min(k / _LOOKS * left / max(over_there, _SOON), 1.0)
         shares[k] = min(max(u * u * (3.0 - 2.0 * u) + (1.0 - u) ** 2 * u * faster, 0.0), 1.0)
-    way = (x, z, row[2] + foot[YAW], slope), (to_x, to_z, row[2] + goal[2], ends[1])
+    way = (x, z, row[2] + foot[YAW], was[1]), (to_x, to_z, row[2] + goal[2], ends[1])
     set_highest_under(ground, under.sole, way[0], way[1], near, shares, overs)
-    falls = max(overs[0] - lands, 0.0) if overs[0] > _NONE else 0.0
+    wanted, falls = _towards(rising, lands, left + dt, dt), max(overs[0] - lands, 0.0) if overs[0] > _NONE else 0.0
     for k in range(_LOOKS):
         if overs[k] > _NONE:
             over = OVER * ground.step if overs[k] > lands + (1.0 - shares[k]) * falls + _LEVEL else 0.0
-            wanted = max(wanted, overs[k] + over - _RISING * k / _LOOKS * left)
-    return max(wanted, lands - _RISING * left)
+            until = k / _LOOKS * left + dt
+            if overs[k] + over > _towards(rising, lands, left + dt, until) + _SLIGHT:
+                wanted = max(wanted, _towards(rising, overs[k] + over, until, dt))
+    return wanted, overs[0]
 
 
 @helper
 def _swung(under: Underfoot, row: Floats, side: int, goal: Landing, was: Lie, dt: float) -> Lie:
-    """Height and slope of a swinging foot that `was` so high and tilted `dt` seconds ago."""
+    """Height and slope of a swinging foot that `was` so high and tilted `dt` seconds ago; how fast it rises is set."""
     foot, place, left = row[ROOT_STATE + FOOT * side :], (goal[0], goal[1], goal[2]), goal[3]
     level = _level_there(under, row, foot, place)
     lands, slope = level, 0.0
@@ -85,11 +101,15 @@ def _swung(under: Underfoot, row: Floats, side: int, goal: Landing, was: Lie, dt
         lands, slope = stood_at(under.ground, under.sole, row, place[0], place[1], place[2])
     if lands == _NONE:
         return was
-    wanted = level if level > _NONE else _needed(under, row, foot, was[1], goal, (lands, slope))
+    if level > _NONE:
+        wanted, least = _towards((was[0], foot[RISING]), level, left + dt, dt), level
+    else:
+        wanted, least = _needed(under, row, foot, was, goal, (lands, slope), dt)
+    rate = min(max((wanted - was[0]) / dt, foot[RISING] - _SPURT * dt), foot[RISING] + _SPURT * dt)
+    rate = min(max(rate, -HASTY, (least - was[0]) / dt), _UP)
+    foot[RISING] = rate
     part = min(_EASE * dt / (left + dt), 1.0)
-    change = wanted - was[0]
-    height = was[0] + (min(change, _UP * dt) if change > 0.0 else max(part * change, -HASTY * dt))
-    return height, was[1] + part * (slope - was[1])
+    return was[0] + rate * dt, was[1] + part * (slope - was[1])
 
 
 @inner_exact_kernel
