@@ -45,7 +45,7 @@ class RootState(NamedTuple):
 ROOT_STATE = len(RootState._fields)  # number of components of a root state array
 HEIGHT = RootState._fields.index("height")  # the first that is 0 on level ground; the climb is the next
 RISES = RootState._fields.index("left_rise")  # the first of four: rise and slope of both feet
-FOOT = 10  # numbers that say where a foot is, see `foot_state`
+FOOT = 11  # numbers that say where a foot is, see `foot_state`
 WITH_FEET = ROOT_STATE + 2 * FOOT  # number of components of a root state array with feet
 CARRIAGE = 13  # numbers that say how hips, chest and head are carried, see `carriage`
 SHOWN = WITH_FEET + CARRIAGE  # number of components of a root state array as it is shown on the plane

@@ -43,6 +43,7 @@ from elbowroom.jit import brief_exact_kernel, brief_kernel, helper, inner_exact_
 Floats = NDArray[np.float64]
 
 _LEFT, _RIGHT = plain(0), plain(1)
+_NEARLY_AT_REST = 0.3  # m/s of a standard leg: who goes slower may be about to stop, and keeps his heels down
 
 ON_THE_PLANE = np.zeros((2, 2))  # how feet land there, `FARTHER` and `LOWER`
 UNKNOWN = np.empty((0, 1 + ROOT_STATE))  # nothing is known of where the root will come
@@ -61,8 +62,9 @@ def _beside(legs: Floats, scale: float, root: Floats, out: Floats) -> None:
 
 @helper
 def _pitch_in_stance(own: OwnSteps, legs: Floats, stride: Stride, side: int, foot: Floats) -> float:
-    """How a standing foot wants to be pitched: by how far the root has passed it."""
-    u = 0.5 * stride.duty + passed_ago(own, legs, stride, side, foot) / stride.period
+    """How a standing foot wants to be pitched: by how far the root has passed it; flat under who comes to rest."""
+    goes = min(stride.speed * stride.speed / (_NEARLY_AT_REST * _NEARLY_AT_REST * stride.scale), 1.0)
+    u = 0.5 * stride.duty + goes * passed_ago(own, legs, stride, side, foot) / stride.period
     pitch, _ = own_roll(own, stride, side, min(max(u, 0.0), stride.duty * (1.0 - 1e-9)))
     return pitch
 
