@@ -6,7 +6,7 @@ from elbowroom.body.dof import DOF, LOCAL
 from elbowroom.body.gait.foot_state import PITCH
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.pose.kinematics import body_model, posture_capsules
-from elbowroom.body.root import FOOT, RISES, ROOT_STATE, SHOWN, WITH_FEET, RootState
+from elbowroom.body.root import FOOT, RISES, ROOT_STATE, SHOWN, TOLD, WITH_FEET, RootState, as_told
 from elbowroom.control.shown.body_check import BodyCheck, Frames
 from elbowroom.control.shown.standing_about import held_between
 from elbowroom.experiment.judge.capsule_shapes import CapsuleShapes
@@ -85,7 +85,7 @@ LANDED = (
 
 
 def shown(values: tuple[float, ...]) -> np.ndarray:
-    return np.array([*values, *[0.0] * (SHOWN - len(values))])
+    return as_told(np.array([*values, *[0.0] * (TOLD - len(values))]))
 
 
 def test_a_foot_that_is_put_elsewhere_at_once_is_looked_at_all_the_way() -> None:

@@ -21,7 +21,7 @@ import pyarrow.parquet as pq
 from bvh_builder import BvhRecipe, write_bvh
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.pose.kinematics import body_model, posture_capsules
-from elbowroom.body.root import ROOT_STATE
+from elbowroom.body.root import ROOT_STATE, as_told
 from elbowroom.cli.main import app
 from elbowroom.dataset.check import check_dataset
 from elbowroom.dataset.columns import COLUMNS, SCHEMA, SMPL_BONES
@@ -111,7 +111,8 @@ def test_rows_are_what_was_walked(made: Path) -> None:
     assert len(rows) >= 3
     for row in rows:
         q, root = np.array(row["q"]), np.array(row["root"])
-        roots = np.hstack([root, np.zeros((len(root), ROOT_STATE - root.shape[1])), row["feet"], row["carriage"]])
+        behind = np.zeros((len(root), ROOT_STATE - root.shape[1])), row["feet"], row["carriage"]
+        roots = as_told(np.hstack([root, *behind]))
         frames = row["frames"]
         assert len(q) == len(roots) == len(row["time"]) == len(row["near"]) == len(row["height"]) == frames
         assert np.diff(row["time"]) == pytest.approx(1.0 / row["fps"], abs=1e-5)

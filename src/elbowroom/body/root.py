@@ -45,7 +45,29 @@ class RootState(NamedTuple):
 ROOT_STATE = len(RootState._fields)  # number of components of a root state array
 HEIGHT = RootState._fields.index("height")  # the first that is 0 on level ground; the climb is the next
 RISES = RootState._fields.index("left_rise")  # the first of four: rise and slope of both feet
-FOOT = 11  # numbers that say where a foot is, see `foot_state`
+FOOT = 10  # numbers that say where a foot is and how it goes on, see `foot_state`
+_TOLD_OF_FOOT = 9  # the first of them
 WITH_FEET = ROOT_STATE + 2 * FOOT  # number of components of a root state array with feet
 CARRIAGE = 13  # numbers that say how hips, chest and head are carried, see `carriage`
 SHOWN = WITH_FEET + CARRIAGE  # number of components of a root state array as it is shown on the plane
+_TOLD = np.concatenate(
+    [
+        np.arange(ROOT_STATE + _TOLD_OF_FOOT),
+        ROOT_STATE + FOOT + np.arange(_TOLD_OF_FOOT),
+        np.arange(WITH_FEET, SHOWN),
+    ]
+)
+TOLD = len(_TOLD)  # number of components of a root state array as it is recorded
+TOLD_FEET = 2 * _TOLD_OF_FOOT  # and of those of the feet in it, behind the root's own
+
+
+def told(rows: NDArray[np.float64]) -> NDArray[np.float64]:
+    """What is recorded (..., TOLD) of root states (..., SHOWN): not how fast feet rise, which says how they go on."""
+    return rows[..., _TOLD]
+
+
+def as_told(recorded: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Root states (..., SHOWN) of which (..., TOLD) is recorded, with feet that do not rise."""
+    rows = np.zeros((*recorded.shape[:-1], SHOWN))
+    rows[..., _TOLD] = recorded
+    return rows

@@ -6,7 +6,7 @@ from typing import NamedTuple
 import pyarrow as pa
 
 from elbowroom.body.dof import DOF
-from elbowroom.body.root import CARRIAGE, FOOT, HEIGHT
+from elbowroom.body.root import CARRIAGE, HEIGHT, TOLD_FEET
 
 # The 22 body joints of SMPL in its order, each by the VRM bone that begins there. Loper et al. 2015; SMPL+H leaves the
 # hands' own joints to the hands. A bone that an avatar lacks is where the nearest bone above it begins.
@@ -49,7 +49,7 @@ COLUMNS = (
     Column("command", _frames(4, F32), "(F, 4) forward, strafe, turn in -1..1, direction in radians or NaN"),
     Column("root", _frames(HEIGHT, F32), "(F, 7) x, z, heading, their velocities in the body's axes, strides"),
     Column("height", pa.list_(F32), "(F,) metres, of the ground that the root is over"),
-    Column("feet", _frames(2 * FOOT, F32), "(F, 22) both feet as in body/gait/foot_state.py, 0 on uneven ground"),
+    Column("feet", _frames(TOLD_FEET, F32), "(F, 18) both feet as in body/gait/foot_state.py, 0 on uneven ground"),
     Column("carriage", _frames(CARRIAGE, F32), "(F, 13) hips, trunk as in body/gait/carriage.py, 0 on uneven ground"),
     Column("q", _frames(DOF, F32), f"(F, {DOF}) configuration, radians; see the architecture page"),
     Column("joints", _frames(_JOINTS, F32), "(F, 66) places x, y, z of the 22 SMPL joints in the world, metres"),

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.pose.kinematics import body_model, posture_capsules
-from elbowroom.body.root import CARRIAGE, FOOT, HEIGHT, ROOT_STATE, WITH_FEET, RootState
+from elbowroom.body.root import HEIGHT, ROOT_STATE, SHOWN, TOLD_FEET, RootState, told
 from elbowroom.body.skeleton import Skeleton
 from elbowroom.control.frame import Frame
 from elbowroom.dataset.draw import Draw
@@ -39,6 +39,7 @@ def row_of(
     frames = [frame for _, frame in kept]
     q, roots = np.stack([frame.q for frame in frames]), np.stack([frame.root for frame in frames])
     times = np.array([frame.time for frame in frames])
+    behind = _behind(roots)
     rotations, joints, known = _posed(humanoid, q, roots, fps)
     present = np.array([humanoid.skeleton.has(bone) for bone in SMPL_BONES])
     local = np.where(present[:, None], rotations[:, known], [0.0, 0.0, 0.0, 1.0])
@@ -59,8 +60,8 @@ def row_of(
         "command": np.array([_wish(command) for command, _ in kept]),
         "root": roots[:, :HEIGHT],
         "height": roots[:, HEIGHT],
-        "feet": _behind(roots, ROOT_STATE, 2 * FOOT),
-        "carriage": _behind(roots, WITH_FEET, CARRIAGE),
+        "feet": behind[:, :TOLD_FEET],
+        "carriage": behind[:, TOLD_FEET:],
         "q": q,
         "joints": joints,
         "rotations": local.reshape(len(frames), -1),
@@ -98,9 +99,9 @@ def _posed(humanoid: Humanoid, q: Floats, roots: Floats, fps: int) -> tuple[Floa
     return rotations, body.joints_in_world()[:, known].reshape(len(q), -1), known
 
 
-def _behind(roots: Floats, first: int, size: int) -> Floats:
-    """Some numbers (F, size) of the roots, 0 where these are too short."""
-    return roots[:, first : first + size] if roots.shape[1] > first else np.zeros((len(roots), size))
+def _behind(roots: Floats) -> Floats:
+    """What is told of feet and carriage behind the roots (F, TOLD - ROOT_STATE), 0 where these are without."""
+    return told(np.pad(roots, ((0, 0), (0, SHOWN - roots.shape[1]))))[:, ROOT_STATE:]
 
 
 def _document(scene: Scene) -> dict[str, Any]:

@@ -14,14 +14,13 @@ Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
 
 # Places of a foot's numbers: x, z, yaw of the flat foot in the root's frame, pitch, lift above the ground, how much of
-# its swing is over (0: it stands), the velocity of x, z and yaw over the ground, in the axes of the root, how fast what
-# it stands on or swings over rises, and how fast it is pitched.
-X, Z, YAW, PITCH, LIFT, SWING, VELOCITY, RISING, ROLLING = 0, 1, 2, 3, 4, 5, 6, 9, 10
+# its swing is over (0: it stands), the velocity of x, z and yaw over the ground, in the axes of the root, and how fast
+# what it stands on or swings over rises.
+X, Z, YAW, PITCH, LIFT, SWING, VELOCITY, RISING = 0, 1, 2, 3, 4, 5, 6, 9
 
 FLAT = 1e-9  # radians, metres
 LIFT_RATE = 1.5  # m/s: no foot is lifted or lowered faster; a recorded one is
 _ROLL_RATE, _SLAP = 14.0, 6.0  # rad/s: nor tilted; nor do the toes of one that stands on its heel come down
-_ROLLS_ON = 300.0  # rad/s² by which a foot is tilted faster and faster: a knee that is straight would snap
 _STILL = 1e-3  # m/s: below, the root rests
 
 
@@ -73,13 +72,9 @@ def land(foot: Floats) -> None:
 
 @inner_exact_kernel
 def tilt(foot: Floats, pitch: float, dt: float) -> None:
-    """Pitch a foot towards what it should be, no faster than feet roll, and not at once so fast."""
-    if dt <= 0.0:
-        return
-    most = _SLAP if foot[PITCH] < 0.0 and foot[SWING] <= 0.0 else _ROLL_RATE
-    up, down = max(foot[ROLLING], 0.0) + _ROLLS_ON * dt, min(foot[ROLLING], 0.0) - _ROLLS_ON * dt
-    foot[ROLLING] = min(max((pitch - foot[PITCH]) / dt, -most, down), most, up)
-    foot[PITCH] += dt * foot[ROLLING]
+    """Pitch a foot towards what it should be, no faster than feet roll."""
+    most = dt * (_SLAP if foot[PITCH] < 0.0 and foot[SWING] <= 0.0 else _ROLL_RATE)
+    foot[PITCH] += min(max(pitch - foot[PITCH], -most), most)
 
 
 def standing(rows: ArrayLike) -> Bools:

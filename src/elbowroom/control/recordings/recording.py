@@ -31,7 +31,7 @@ from numpy.typing import NDArray
 
 from elbowroom import __version__
 from elbowroom.body.dof import DOF, LOWERING, DofGroup, followed
-from elbowroom.body.root import HEIGHT, ROOT_STATE, SHOWN, WITH_FEET, RootState
+from elbowroom.body.root import CARRIAGE, HEIGHT, ROOT_STATE, SHOWN, TOLD, RootState, as_told, told
 from elbowroom.clips.motion_set import STOCK, MotionSet
 from elbowroom.control.controller import Controller
 from elbowroom.control.frame import Frame, Phase
@@ -70,7 +70,7 @@ STEP = np.dtype(
         ("direction", "<f8"),  # not a number where the command has none
         ("dt", "<f8"),
         ("q", "<f8", DOF),
-        ("root", "<f8", SHOWN),
+        ("root", "<f8", TOLD),
         ("phase", "u1"),  # place in `Phase`
         ("flags", "u1"),
     ]
@@ -183,7 +183,7 @@ class StepWriter:
         root[: len(frame.root)] = frame.root  # without feet where it was not a controller that made it
         self._things.note(self.steps)
         self._ways.note(self.steps, command)
-        self._pending.append((*wish, frame.q, root, _PHASES.index(frame.phase), flags))
+        self._pending.append((*wish, frame.q, told(root), _PHASES.index(frame.phase), flags))
         if len(self._pending) >= STEPS_PER_CHUNK:
             self.flush()
 
@@ -267,7 +267,9 @@ class Recording:
         magic = file.read(len(MAGIC))
         self._places = _PLACES.get(magic, np.arange(0))
         self._has_end = magic in (MAGIC, _MAGIC_7, _MAGIC_6, _MAGIC_5, _MAGIC_4, _MAGIC_3)
-        self.root_size = {MAGIC: SHOWN, _MAGIC_7: WITH_FEET, _MAGIC_6: ROOT_STATE}.get(magic, HEIGHT)  # numbers of it
+        self.root_size = {MAGIC: TOLD, _MAGIC_7: TOLD - CARRIAGE, _MAGIC_6: ROOT_STATE}.get(
+            magic, HEIGHT
+        )  # numbers of it
         if not len(self._places):
             raise InputError(_not_read_here(self.path, magic))
         size = file.read(_COUNT.size)
@@ -327,7 +329,7 @@ class Recording:
 
 def roots_of(steps: Steps) -> NDArray[np.float64]:
     """Root states of `STEP` records with feet and carriage (N, SHOWN), or (N, ROOT_STATE) where they have no feet."""
-    roots = np.ascontiguousarray(steps["root"], np.float64).reshape(-1, SHOWN)
+    roots = as_told(np.ascontiguousarray(steps["root"], np.float64).reshape(-1, TOLD))
     return roots if roots[:, ROOT_STATE:].any() else np.ascontiguousarray(roots[:, :ROOT_STATE])
 
 

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from elbowroom.body.humanoid import Humanoid
+from elbowroom.body.root import SHOWN, told
 from elbowroom.control.controller import Controller
 from elbowroom.control.frame import Frame, Phase
 from elbowroom.control.plans.lookahead import Lookahead
@@ -93,8 +94,8 @@ def _same(step: Any, frame: Frame, known: int) -> bool:
 
     Those that a frame lacks, as on uneven ground, are recorded as 0.
     """
-    shown = frame.root[:known]
-    same_root = step["root"][:known].tobytes() == np.pad(shown, (0, known - len(shown))).tobytes()
+    shown = told(np.pad(frame.root, (0, SHOWN - len(frame.root))))
+    same_root = step["root"][:known].tobytes() == shown[:known].tobytes()
     same_pose = step["q"].tobytes() == frame.q.tobytes() and same_root
     return bool(same_pose and _PHASES.index(frame.phase) == step["phase"])
 
