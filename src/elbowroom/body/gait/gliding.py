@@ -67,7 +67,7 @@ def glide_feet(legs: Floats, scale: float, before: Floats, root: Floats, dt: flo
             foot[SWING] = 0.0 if rests(root) and is_flat(foot) else swung
         foot[RISING] = 0.0
         for i in range(3):
-            foot[VELOCITY + i] = (foot[X + i] - stood[i]) / dt if dt > 0.0 and foot[SWING] > 0.0 else 0.0
+            foot[VELOCITY + i] = (foot[X + i] - stood[i]) / dt if holds and dt > 0.0 and foot[SWING] > 0.0 else 0.0
 
 
 def gliding(gait: GaitShape, before: Floats, root: Floats, dt: float, *, holds: bool = False) -> Floats:
