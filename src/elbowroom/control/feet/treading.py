@@ -1,32 +1,28 @@
 """What feet that step stand on where ground is not a plane: a state that goes on from frame to frame, as `footholds`.
 
 A foot that stands keeps its height and its slope in the world, whatever the root does. One that swings goes to those of
-the ground where it will land, over what is in between: it is as high as it has to be to get over all that lies ahead of
-it at the rate by which feet rise, and comes down as soon as nothing is.
+the ground where it will land, over what is in between, without a jerk: by a cubic to where it lands, or to a height
+that it has to have by the time that it is over what lies ahead.
 """
-
-import math
 
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.body.gait.foot_state import RISING, SWING, VELOCITY, YAW, X, Z, carry
+from elbowroom.body.gait.foot_state import RISING, SWING, VELOCITY, YAW, X, Z
 from elbowroom.body.gait.footholds import landing, step_feet
-from elbowroom.body.gait.landing_places import FARTHER, LOWER, Stepper, landing_place
-from elbowroom.body.gait.own_steps import own_stride_at
-from elbowroom.body.gait.stepping_times import time_to_landing
+from elbowroom.body.gait.landing_places import Stepper
 from elbowroom.body.root import FOOT, HEIGHT, RISES, ROOT_STATE, WITH_FEET
+from elbowroom.control.feet.landing_on_ground import NO_GROUND, Lie, level_there, set_landings
 from elbowroom.jit import helper, inner_exact_kernel
 from elbowroom.planning.model.footing import OVER, Underfoot, in_world, stood_at
-from elbowroom.world.ground.ground import height_along, height_at, level_about, under_body
+from elbowroom.world.ground.ground import height_along, under_body
 from elbowroom.world.ground.swept import set_highest_under
 
 Floats = NDArray[np.float64]
-Place = tuple[float, float, float]  # x, z and yaw as seen from the root
-Landing = tuple[float, float, float, float, float]  # the same, seconds until then, and until it is over that place
-Lie = tuple[float, float]  # height and slope of what a foot stands on or swings over
+# x, z and yaw as seen from the root, seconds until a foot lands there, and until it is over that place
+Landing = tuple[float, float, float, float, float]
+Rising = tuple[float, float]  # how high a foot is, and how fast it rises
 
-_NONE = -math.inf
 _LEVEL, _TILTED = 0.002, 0.02  # metres, radians: so much is no step, and no other slope
 _LOOKS = 8  # places of the rest of a swing that are looked at
 _SOON = 1e-3  # seconds: who will be over his place so soon is there
@@ -35,30 +31,20 @@ HASTY, TURNS = 4.0, 4.0  # m/s that a foot rises or comes down by at most; radia
 _UP, _SPURT = 3.0, 45.0  # m/s that a foot rises by at most, and m/s² by which that changes
 _SLIGHT = 1e-3  # metres: what a foot comes against by less is not gone over
 _EASE = 2.0  # how much faster than evenly a sole is tilted: the power of the time that is left
-_AIR, _SHIFT, _TRIED = 0.02, 0.015, 8  # metres under ankle and ball; metres by which a foot lands elsewhere, so often
-_BALL = 6  # column of `GaitShape.legs`
 
 
 @helper
-def _level_there(under: Underfoot, row: Floats, foot: Floats, goal: Place) -> float:
-    """The height of the ground where it is one level under a root, a foot and its goal; minus infinity where not."""
-    low_x, high_x = min(0.0, foot[X], goal[0]), max(0.0, foot[X], goal[0])
-    low_z, high_z = min(0.0, foot[Z], goal[1]), max(0.0, foot[Z], goal[1])
-    around = math.hypot(max(under.sole.back, under.sole.ahead), under.sole.aside)
-    x, z = in_world(row, 0.5 * (low_x + high_x), 0.5 * (low_z + high_z))
-    reach = 0.5 * math.hypot(high_x - low_x, high_z - low_z) + around
-    return level_about(under.ground, x, z, reach, row[HEIGHT])
-
-
-@helper
-def _towards(lie: Lie, goal: float, time: float, after: float) -> float:
-    """How high a foot is `after` some seconds that comes to rest at a height in `time`: a cubic; `lie` is height, rate.
+def _towards(rising: Rising, goal: float, time: float, after: float) -> float:
+    """How high a foot is `after` some seconds that comes to rest at a height in `time`: a cubic.
 
     Without a jump of its velocity.
     """
     part = min(after / time, 1.0)
     rest = 1.0 - part
-    return rest * rest * ((1.0 + 2.0 * part) * lie[0] + part * lie[1] * time) + part * part * (3.0 - 2.0 * part) * goal
+    return (
+        rest * rest * ((1.0 + 2.0 * part) * rising[0] + part * rising[1] * time)
+        + part * part * (3.0 - 2.0 * part) * goal
+    )
 
 
 @helper
@@ -72,7 +58,7 @@ def _needed(
     ground, (x, z), (to_x, to_z) = under.ground, in_world(row, foot[X], foot[Z]), in_world(row, goal[0], goal[1])
     (left, over_there), lands, rising = goal[3:], ends[0], (was[0], foot[RISING])
     near = height_along(ground, (row[0], under_body(ground, row[0], row[HEIGHT], row[1]), row[1]), x, z)
-    near, shares, overs = near if near > _NONE else row[HEIGHT], np.empty(_LOOKS), np.empty(_LOOKS)
+    near, shares, overs = near if near > NO_GROUND else row[HEIGHT], np.empty(_LOOKS), np.empty(_LOOKS)
     ahead, aside = goal[0] - foot[X], goal[1] - foot[Z]
     faster = ahead * foot[VELOCITY] + aside * foot[VELOCITY + 1]
     faster *= over_there / max(ahead * ahead + aside * aside, _NEAR)
@@ -81,9 +67,9 @@ def _needed(
         shares[k] = min(max(u * u * (3.0 - 2.0 * u) + (1.0 - u) ** 2 * u * faster, 0.0), 1.0)
     way = (x, z, row[2] + foot[YAW], was[1]), (to_x, to_z, row[2] + goal[2], ends[1])
     set_highest_under(ground, under.sole, way[0], way[1], near, shares, overs)
-    wanted, falls = _towards(rising, lands, left + dt, dt), max(overs[0] - lands, 0.0) if overs[0] > _NONE else 0.0
+    wanted, falls = _towards(rising, lands, left + dt, dt), max(overs[0] - lands, 0.0) if overs[0] > NO_GROUND else 0.0
     for k in range(_LOOKS):
-        if overs[k] > _NONE:
+        if overs[k] > NO_GROUND:
             over = OVER * ground.step if overs[k] > lands + (1.0 - shares[k]) * falls + _LEVEL else 0.0
             until = k / _LOOKS * left + dt
             if overs[k] + over > _towards(rising, lands, left + dt, until) + _SLIGHT:
@@ -95,13 +81,13 @@ def _needed(
 def _swung(under: Underfoot, row: Floats, side: int, goal: Landing, was: Lie, dt: float) -> Lie:
     """Height and slope of a swinging foot that `was` so high and tilted `dt` seconds ago; how fast it rises is set."""
     foot, place, left = row[ROOT_STATE + FOOT * side :], (goal[0], goal[1], goal[2]), goal[3]
-    level = _level_there(under, row, foot, place)
+    level = level_there(under, row, foot, place)
     lands, slope = level, 0.0
-    if level == _NONE:
+    if level == NO_GROUND:
         lands, slope = stood_at(under.ground, under.sole, row, place[0], place[1], place[2])
-    if lands == _NONE:
+    if lands == NO_GROUND:
         return was
-    if level > _NONE:
+    if level > NO_GROUND:
         wanted, least = _towards((was[0], foot[RISING]), level, left + dt, dt), level
     else:
         wanted, least = _needed(under, row, foot, was, goal, (lands, slope), dt)
@@ -119,70 +105,13 @@ def _settled(under: Underfoot, row: Floats, side: int, was: Lie, most: float) ->
     It rises or comes down by no more than `most` metres.
     """
     foot = row[ROOT_STATE + FOOT * side :]
-    height, slope = _level_there(under, row, foot, (foot[X], foot[Z], foot[YAW])), 0.0
-    if height == _NONE:
+    height, slope = level_there(under, row, foot, (foot[X], foot[Z], foot[YAW])), 0.0
+    if height == NO_GROUND:
         height, slope = stood_at(under.ground, under.sole, row, foot[X], foot[Z], foot[YAW])
-    if height == _NONE or (abs(height - was[0]) < _LEVEL and abs(slope - was[1]) < _TILTED):
+    if height == NO_GROUND or (abs(height - was[0]) < _LEVEL and abs(slope - was[1]) < _TILTED):
         return was
     turn = TURNS * most
     return was[0] + min(max(height - was[0], -most), most), was[1] + min(max(slope - was[1], -turn), turn)
-
-
-@helper
-def _bears(under: Underfoot, row: Floats, foot: Place, ball: float) -> tuple[bool, bool, Lie]:
-    """Whether a foot at a place would have ground under its ankle, and under its ball: not under its toes alone.
-
-    And how it would lie.
-    """
-    lies, slope = stood_at(under.ground, under.sole, row, foot[0], foot[1], foot[2])
-    x, z = in_world(row, foot[0], foot[1])
-    ankle = height_at(under.ground, x, z, lies)
-    x, z = in_world(row, foot[0] + ball * math.sin(foot[2]), foot[1] + ball * math.cos(foot[2]))
-    front = height_at(under.ground, x, z, lies) + ball * math.tan(slope)
-    return lies > _NONE and lies - ankle < _AIR, lies > _NONE and lies - front < _AIR, (lies, slope)
-
-
-@inner_exact_kernel
-def _farther_onto(under: Underfoot, who: Stepper, row: Floats, side: int, goal: Place) -> tuple[float, Lie]:
-    """How much farther ahead a foot has to land so that it stands on a tread and not across its edge, metres.
-
-    As little as possible. Where that is not had within a few centimetres it stands on its ball, over which it rolls;
-    0 where it does not do so either. And how it lies there.
-    """
-    ball, scale, onto_ball, lie = who.legs[side, _BALL], who.scale, math.inf, (_NONE, 0.0)
-    for k in range(2 * _TRIED + 1):
-        ahead = _SHIFT * scale * ((k + 1) // 2) * (1.0 if k % 2 == 0 else -1.0)
-        x, z = goal[0] + ahead * math.sin(goal[2]), goal[1] + ahead * math.cos(goal[2])
-        heel, front, there = _bears(under, row, (x, z, goal[2]), ball)
-        if heel and front:
-            return float(ahead), there
-        if (front and onto_ball == math.inf) or k == 0:
-            onto_ball, lie = float(ahead) if front else math.inf, there
-    return onto_ball if onto_ball < math.inf else 0.0, lie
-
-
-@helper
-def _set_landings(
-    under: Underfoot, who: Stepper, before: Floats, root: Floats, coming: Floats, lands: Floats, later: Floats
-) -> None:
-    """Set how feet that swing land (2, 2) under a root state, on after the row `before`: as `step_feet` takes it.
-
-    One that is bound for a place already has been told, and goes where it was going.
-    """
-    row, legs, scale, own = np.empty(WITH_FEET), who.legs, who.scale, who.own
-    stride = own_stride_at(own, scale, root)
-    carry(before, root, row)
-    for side in range(2):
-        foot = row[ROOT_STATE + FOOT * side :]
-        if foot[SWING] > 0.0:
-            twin, at = row[ROOT_STATE + FOOT * (1 - side) :], RISES + 2 * (1 - side)
-            left = max(time_to_landing(own, legs, stride, side, row, foot, twin, 0.0), 0.0)
-            x, z, yaw = landing_place(who, side, row, twin, coming, left, 0.0, later)
-            if _level_there(under, row, foot, (x, z, yaw)) == _NONE:
-                lands[side, FARTHER], (height, slope) = _farther_onto(under, who, row, side, (x, z, yaw))
-                apart = math.hypot(x - twin[X], z - twin[Z])
-                falls = before[at] + before[HEIGHT] - height - math.tan(max(slope, 0.0)) * apart
-                lands[side, LOWER] = falls if height > _NONE else 0.0
 
 
 @inner_exact_kernel
@@ -196,7 +125,7 @@ def step_on(
     """
     lands, later = np.zeros((2, 2)), np.empty(ROOT_STATE)
     if not under.ground.plain and dt > 0.0:
-        _set_landings(under, who, before, root, coming, lands, later)
+        set_landings(under, who, before, root, coming, lands, later)
     step_feet(who, before, root, dt, coming, lands, out[:WITH_FEET])
     for side in range(0 if under.ground.plain else 2):
         at, swing = RISES + 2 * side, ROOT_STATE + FOOT * side + SWING

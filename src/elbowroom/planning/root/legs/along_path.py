@@ -50,7 +50,7 @@ def free_part(
     And that of the states that legs were posed in. `known` (2, n) is the least room in key intervals and in stops, or
     `UNKNOWN`: what was looked at is written there.
     """
-    bounds, free, posed, before = how.bounds, states.shape[0] - 1, 0, UNKNOWN
+    bounds, free, posed = how.bounds, states.shape[0] - 1, 0
     moving, stopping = to_check(
         states, interval, bounds.braking, bounds.turn_acceleration, how.skin, how.hull, among.ground
     )
@@ -137,12 +137,12 @@ def _least_rooms(
     spans, fresh, found = 0, 0, np.full(least.shape[0], _ENDLESS)
     for i in range(count):
         if owner[i] == _IN_NONE:
-            spans_begin = i
+            first = i
         ends = i + 1 == count or owner[i + 1] != owner[i]
-        if owner[i] != _IN_NONE and (ends or i - spans_begin == _SPAN):
-            begin[spans], end[spans] = spans_begin, i
-            spans, spans_begin = spans + 1, i
-        if np.isnan(room[i]) and (owner[i] == _IN_NONE or spans_begin == i):
+        if owner[i] != _IN_NONE and (ends or i - first == _SPAN):
+            begin[spans], end[spans] = first, i
+            spans, first = spans + 1, i
+        if np.isnan(room[i]) and (owner[i] == _IN_NONE or first == i):
             at[fresh] = i
             fresh += 1
     reached, blocked = step * _SPAN, least.shape[0]

@@ -1,0 +1,95 @@
+"""Where feet that step land where ground is not a plane: on a tread and not across its edge, above it or below.
+
+A foot that would land across an edge lands a little farther ahead or back; how much lower than the other foot it does
+tells `footholds` when it has to be over its place.
+"""
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowroom.body.gait.foot_state import SWING, X, Z, carry
+from elbowroom.body.gait.landing_places import FARTHER, LOWER, Stepper, landing_place
+from elbowroom.body.gait.own_steps import own_stride_at
+from elbowroom.body.gait.stepping_times import time_to_landing
+from elbowroom.body.root import FOOT, HEIGHT, RISES, ROOT_STATE, WITH_FEET
+from elbowroom.jit import helper, inner_exact_kernel
+from elbowroom.planning.model.footing import Underfoot, in_world, stood_at
+from elbowroom.world.ground.ground import height_at, level_about
+
+Floats = NDArray[np.float64]
+Place = tuple[float, float, float]  # x, z and yaw as seen from the root
+Lie = tuple[float, float]  # height and slope of what a foot stands on or swings over
+
+NO_GROUND = -math.inf  # the height of no ground
+_AIR, _SHIFT, _TRIED = 0.02, 0.015, 8  # metres under ankle and ball; metres by which a foot lands elsewhere, so often
+_BALL = 6  # column of `GaitShape.legs`
+
+
+@helper
+def level_there(under: Underfoot, row: Floats, foot: Floats, goal: Place) -> float:
+    """The height of the ground where it is one level under a root, a foot and its goal; minus infinity where not."""
+    low_x, high_x = min(0.0, foot[X], goal[0]), max(0.0, foot[X], goal[0])
+    low_z, high_z = min(0.0, foot[Z], goal[1]), max(0.0, foot[Z], goal[1])
+    around = math.hypot(max(under.sole.back, under.sole.ahead), under.sole.aside)
+    x, z = in_world(row, 0.5 * (low_x + high_x), 0.5 * (low_z + high_z))
+    reach = 0.5 * math.hypot(high_x - low_x, high_z - low_z) + around
+    return level_about(under.ground, x, z, reach, row[HEIGHT])
+
+
+@helper
+def _bears(under: Underfoot, row: Floats, foot: Place, ball: float) -> tuple[bool, bool, Lie]:
+    """Whether a foot at a place would have ground under its ankle, and under its ball: not under its toes alone.
+
+    And how it would lie.
+    """
+    lies, slope = stood_at(under.ground, under.sole, row, foot[0], foot[1], foot[2])
+    x, z = in_world(row, foot[0], foot[1])
+    ankle = height_at(under.ground, x, z, lies)
+    x, z = in_world(row, foot[0] + ball * math.sin(foot[2]), foot[1] + ball * math.cos(foot[2]))
+    front = height_at(under.ground, x, z, lies) + ball * math.tan(slope)
+    return lies > NO_GROUND and lies - ankle < _AIR, lies > NO_GROUND and lies - front < _AIR, (lies, slope)
+
+
+@inner_exact_kernel
+def _farther_onto(under: Underfoot, who: Stepper, row: Floats, side: int, goal: Place) -> tuple[float, Lie]:
+    """How much farther ahead a foot has to land so that it stands on a tread and not across its edge, metres.
+
+    As little as possible. Where that is not had within a few centimetres it stands on its ball, over which it rolls;
+    0 where it does not do so either. And how it lies there.
+    """
+    ball, scale, onto_ball, lie = who.legs[side, _BALL], who.scale, math.inf, (NO_GROUND, 0.0)
+    for k in range(2 * _TRIED + 1):
+        ahead = _SHIFT * scale * ((k + 1) // 2) * (1.0 if k % 2 == 0 else -1.0)
+        x, z = goal[0] + ahead * math.sin(goal[2]), goal[1] + ahead * math.cos(goal[2])
+        heel, front, there = _bears(under, row, (x, z, goal[2]), ball)
+        if heel and front:
+            return float(ahead), there
+        if (front and onto_ball == math.inf) or k == 0:
+            onto_ball, lie = float(ahead) if front else math.inf, there
+    return onto_ball if onto_ball < math.inf else 0.0, lie
+
+
+@helper
+def set_landings(
+    under: Underfoot, who: Stepper, before: Floats, root: Floats, coming: Floats, lands: Floats, later: Floats
+) -> None:
+    """Set how feet that swing land (2, 2) under a root state, on after the row `before`: as `step_feet` takes it.
+
+    One that is bound for a place already has been told, and goes where it was going.
+    """
+    row, legs, scale, own = np.empty(WITH_FEET), who.legs, who.scale, who.own
+    stride = own_stride_at(own, scale, root)
+    carry(before, root, row)
+    for side in range(2):
+        foot = row[ROOT_STATE + FOOT * side :]
+        if foot[SWING] > 0.0:
+            twin, at = row[ROOT_STATE + FOOT * (1 - side) :], RISES + 2 * (1 - side)
+            left = max(time_to_landing(own, legs, stride, side, row, foot, twin, 0.0), 0.0)
+            x, z, yaw = landing_place(who, side, row, twin, coming, left, 0.0, later)
+            if level_there(under, row, foot, (x, z, yaw)) == NO_GROUND:
+                lands[side, FARTHER], (height, slope) = _farther_onto(under, who, row, side, (x, z, yaw))
+                apart = math.hypot(x - twin[X], z - twin[Z])
+                falls = before[at] + before[HEIGHT] - height - math.tan(max(slope, 0.0)) * apart
+                lands[side, LOWER] = falls if height > NO_GROUND else 0.0
