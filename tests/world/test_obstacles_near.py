@@ -12,6 +12,7 @@ from elbowroom.world.obstacles.obstacles import Obstacles
 from elbowroom.world.obstacles.rows import about, bounds_of, is_empty
 from elbowroom.world.obstacles.shapes import Sphere
 from elbowroom.world.obstacles.tracks.moving import Moving, Track
+from elbowroom.world.scene import Scene
 from shapes import box_hull, some_obstacles
 
 Floats = NDArray[np.float64]
@@ -124,6 +125,15 @@ def test_what_is_along_a_way_stands_there_or_sweeps_it() -> None:
     elsewhere = obstacles.along(times, ((0.0, 0.0), (1.0, 1.0)))
     assert not len(elsewhere.numbers)
     assert not elsewhere.stamps.any()
+
+
+def test_kernels_are_handed_what_is_along_a_way_in_order() -> None:
+    """In order in memory, where only some of all that moves comes by: else they would be compiled again in a walk."""
+    obstacles, rng = Scene.load("traffic").obstacles, np.random.default_rng(1)
+    for _ in range(60):
+        (x, z), half = rng.uniform(-5.0, 8.0, 2), float(rng.choice([1.0, 4.0, 20.0]))
+        found = obstacles.along(np.linspace(0.0, 2.4, 17), ((x - half, z - half), (x + half, z + half)))
+        assert all(each.rows.flags.c_contiguous for each in (found.spans, found.moments))
 
 
 def test_a_moving_hull_is_where_its_points_are() -> None:

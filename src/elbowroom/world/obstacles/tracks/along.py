@@ -39,7 +39,7 @@ def along(
         return Along(Spans(spans, standing.packed), Spans(moments, standing.packed), still, numbers)
     around = np.arange(len(times))
     first, last = times[np.maximum(around - 1, 0)], times[np.minimum(around + 1, len(times) - 1)]
-    doubled = moving.swept_between(first, last).rows[:, near]
+    doubled = np.ascontiguousarray(moving.swept_between(first, last).rows[:, near])
     swept = np.ascontiguousarray(sweeps[:, near])
     known = swept[..., :ROUNDING].reshape(len(still), -1)
     return Along(
