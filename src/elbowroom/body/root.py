@@ -62,8 +62,13 @@ TOLD_FEET = 2 * _TOLD_OF_FOOT  # and of those of the feet in it, behind the root
 
 
 def told(rows: NDArray[np.float64]) -> NDArray[np.float64]:
-    """What is recorded (..., TOLD) of root states (..., SHOWN): not how fast feet rise, which says how they go on."""
-    return rows[..., _TOLD]
+    """What is recorded (..., TOLD) of root states (..., SHOWN or less): all but how fast feet rise.
+
+    That says how they go on. Numbers that the rows are without are 0.
+    """
+    whole = np.zeros((*rows.shape[:-1], SHOWN))
+    whole[..., : rows.shape[-1]] = rows
+    return whole[..., _TOLD]
 
 
 def as_told(recorded: NDArray[np.float64]) -> NDArray[np.float64]:

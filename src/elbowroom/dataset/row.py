@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.pose.kinematics import body_model, posture_capsules
-from elbowroom.body.root import HEIGHT, ROOT_STATE, SHOWN, TOLD_FEET, RootState, told
+from elbowroom.body.root import HEIGHT, ROOT_STATE, TOLD_FEET, RootState, told
 from elbowroom.body.skeleton import Skeleton
 from elbowroom.control.frame import Frame
 from elbowroom.dataset.draw import Draw
@@ -39,7 +39,7 @@ def row_of(
     frames = [frame for _, frame in kept]
     q, roots = np.stack([frame.q for frame in frames]), np.stack([frame.root for frame in frames])
     times = np.array([frame.time for frame in frames])
-    behind = _behind(roots)
+    behind = told(roots)[:, ROOT_STATE:]
     rotations, joints, known = _posed(humanoid, q, roots, fps)
     present = np.array([humanoid.skeleton.has(bone) for bone in SMPL_BONES])
     local = np.where(present[:, None], rotations[:, known], [0.0, 0.0, 0.0, 1.0])
@@ -97,11 +97,6 @@ def _posed(humanoid: Humanoid, q: Floats, roots: Floats, fps: int) -> tuple[Floa
     body = Animation("", fps, humanoid.skeleton, rotations, hips, roots[:, [0, HEIGHT, 1]], roots[:, 2])
     known = [_present(humanoid.skeleton, bone) for bone in SMPL_BONES]
     return rotations, body.joints_in_world()[:, known].reshape(len(q), -1), known
-
-
-def _behind(roots: Floats) -> Floats:
-    """What is told of feet and carriage behind the roots (F, TOLD - ROOT_STATE), 0 where these are without."""
-    return told(np.pad(roots, ((0, 0), (0, SHOWN - roots.shape[1]))))[:, ROOT_STATE:]
 
 
 def _document(scene: Scene) -> dict[str, Any]:

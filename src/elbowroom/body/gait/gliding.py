@@ -56,7 +56,7 @@ def glide_feet(legs: Floats, scale: float, before: Floats, root: Floats, dt: flo
         dx, dz, turned = was[X] - x0, was[Z] - z0, was[YAW] - yaw0
         left = max(1.0 - dt * _GLIDE * np.sqrt(scale) / max(np.hypot(dx, dz), 1e-9), 0.0)
         twisted = max(1.0 - dt * _PIVOT / max(abs(turned), 1e-9), 0.0)
-        stood = foot[X], foot[Z], foot[YAW]
+        stayed = foot[X], foot[Z], foot[YAW]  # where it would be if it stood
         foot[X], foot[Z], foot[YAW] = x + left * dx, z + left * dz, yaw + twisted * turned
         foot[LIFT] = was[LIFT] + min(max(lift - was[LIFT], -LIFT_RATE * dt), LIFT_RATE * dt)
         foot[PITCH] = was[PITCH]
@@ -67,7 +67,7 @@ def glide_feet(legs: Floats, scale: float, before: Floats, root: Floats, dt: flo
             foot[SWING] = 0.0 if rests(root) and is_flat(foot) else swung
         foot[RISING] = 0.0
         for i in range(3):
-            foot[VELOCITY + i] = (foot[X + i] - stood[i]) / dt if holds and dt > 0.0 and foot[SWING] > 0.0 else 0.0
+            foot[VELOCITY + i] = (foot[X + i] - stayed[i]) / dt if holds and dt > 0.0 and foot[SWING] > 0.0 else 0.0
 
 
 def gliding(gait: GaitShape, before: Floats, root: Floats, dt: float, *, holds: bool = False) -> Floats:

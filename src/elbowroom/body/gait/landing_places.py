@@ -21,7 +21,7 @@ _CLOSED, _TURNED = 0.012, 0.05  # metres of a standard leg, radians: feet so nea
 _APART, _LONG = 0.13, 0.35  # metres of a standard leg: so far a foot keeps beside the other, if no farther ahead of it
 _TOES_IN = 0.4  # radians: toes of one foot point no farther across the other
 _DOWN = 0.14  # of a swing aside or round: so long it is over its place, and only comes down
-_SINKS, _LOWER = 0.3, 0.1  # of a swing in which a foot only comes down, where it lands so many metres lower, or more
+_SINKS, _FALL = 0.3, 0.1  # of a swing in which a foot only comes down, where it lands so many metres lower, or more
 _BOUND, _BINDING = 0.75, 0.1  # of a swing: from then on a foot goes on to where it goes, more and more
 _MORE = 0.15  # m/s by which a stance may be longer than that of an even walk
 # Of each foot, how it lands where ground is not a plane: so many metres farther ahead, and so many below the other
@@ -126,7 +126,7 @@ def way_over(stride: Stride, lower: float) -> float:
     In steps aside and round, and where it lands so many metres lower, behind an edge.
     """
     aside = _DOWN * (1.0 - straight_part(stride))
-    return 1.0 - max(aside, _SINKS * min(max(lower, 0.0) / (_LOWER * stride.scale), 1.0))
+    return 1.0 - max(aside, _SINKS * min(max(lower, 0.0) / (_FALL * stride.scale), 1.0))
 
 
 @inner_exact_kernel

@@ -31,7 +31,7 @@ from numpy.typing import NDArray
 
 from elbowroom import __version__
 from elbowroom.body.dof import DOF, LOWERING, DofGroup, followed
-from elbowroom.body.root import CARRIAGE, HEIGHT, ROOT_STATE, SHOWN, TOLD, RootState, as_told, told
+from elbowroom.body.root import CARRIAGE, HEIGHT, ROOT_STATE, TOLD, RootState, as_told, told
 from elbowroom.clips.motion_set import STOCK, MotionSet
 from elbowroom.control.controller import Controller
 from elbowroom.control.frame import Frame, Phase
@@ -75,6 +75,7 @@ STEP = np.dtype(
         ("flags", "u1"),
     ]
 )
+_ROOT_SIZES = {MAGIC: TOLD, _MAGIC_7: TOLD - CARRIAGE, _MAGIC_6: ROOT_STATE}  # numbers of a root; earlier HEIGHT
 _Q_3 = np.arange(DofGroup.HEAD.at.start)  # the places of older files' numbers in `q`
 _Q_1 = np.delete(_Q_3, LOWERING)
 _PLACES = {
@@ -179,11 +180,10 @@ class StepWriter:
         ) | (LED * command.led | LEVEL * (not command.may_climb))
         direction = np.nan if command.direction is None else command.direction
         wish = (command.forward, command.strafe, command.turn, direction, dt)
-        root = np.zeros(SHOWN)
-        root[: len(frame.root)] = frame.root  # without feet where it was not a controller that made it
+        root = told(frame.root)  # without feet where it was not a controller that made it
         self._things.note(self.steps)
         self._ways.note(self.steps, command)
-        self._pending.append((*wish, frame.q, told(root), _PHASES.index(frame.phase), flags))
+        self._pending.append((*wish, frame.q, root, _PHASES.index(frame.phase), flags))
         if len(self._pending) >= STEPS_PER_CHUNK:
             self.flush()
 
@@ -267,9 +267,7 @@ class Recording:
         magic = file.read(len(MAGIC))
         self._places = _PLACES.get(magic, np.arange(0))
         self._has_end = magic in (MAGIC, _MAGIC_7, _MAGIC_6, _MAGIC_5, _MAGIC_4, _MAGIC_3)
-        self.root_size = {MAGIC: TOLD, _MAGIC_7: TOLD - CARRIAGE, _MAGIC_6: ROOT_STATE}.get(
-            magic, HEIGHT
-        )  # numbers of it
+        self.root_size = _ROOT_SIZES.get(magic, HEIGHT)
         if not len(self._places):
             raise InputError(_not_read_here(self.path, magic))
         size = file.read(_COUNT.size)

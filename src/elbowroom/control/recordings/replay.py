@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from elbowroom.body.humanoid import Humanoid
-from elbowroom.body.root import SHOWN, told
+from elbowroom.body.root import told
 from elbowroom.control.controller import Controller
 from elbowroom.control.frame import Frame, Phase
 from elbowroom.control.plans.lookahead import Lookahead
@@ -92,10 +92,9 @@ def replay(recording: Recording, humanoid: Humanoid, progress: Callable[[int], o
 def _same(step: Any, frame: Frame, known: int) -> bool:
     """Whether a frame is the recorded one, in as many numbers of the root as are `known`: older ones had fewer.
 
-    Those that a frame lacks, as on uneven ground, are recorded as 0.
+    Those that a frame lacks are recorded as 0.
     """
-    shown = told(np.pad(frame.root, (0, SHOWN - len(frame.root))))
-    same_root = step["root"][:known].tobytes() == shown[:known].tobytes()
+    same_root = step["root"][:known].tobytes() == told(frame.root)[:known].tobytes()
     same_pose = step["q"].tobytes() == frame.q.tobytes() and same_root
     return bool(same_pose and _PHASES.index(frame.phase) == step["phase"])
 
