@@ -7,9 +7,10 @@ from numpy.typing import NDArray
 from elbowroom.body.dof import DOF
 from elbowroom.body.fitting.proportions import proportional_humanoid
 from elbowroom.body.humanoid import Humanoid
+from elbowroom.clips.clip import Clip
 from elbowroom.experiment.judge.poses import Posed, Poser
 from elbowroom.experiment.motion.angles import leg_angles
-from elbowroom.experiment.motion.bands import STANCE_SHARES, Band, stance_share
+from elbowroom.experiment.motion.bands import STANCE_SHARES, Band, stance_share, wrist_sparc
 from elbowroom.experiment.motion.curves import curves_of
 from elbowroom.experiment.motion.cycles import PARTS, in_strides, mean_range
 from elbowroom.experiment.motion.feet import FootTrack, feet
@@ -22,6 +23,7 @@ from elbowroom.experiment.motion.trunk import trunk
 from elbowroom.experiment.motion.turning import lead
 from elbowroom.experiment.motion.walked import posed
 from elbowroom.geometry import quaternion
+from shared_data import SHARED, needs_shared
 
 Floats = NDArray[np.float64]
 
@@ -185,6 +187,41 @@ def test_smoothness_does_not_hang_on_where_in_a_stride_one_looks(stride: float) 
         assert swing is not None
         found.append((swing.sparc, swing.jerk))
     assert np.ptp(found, axis=0).max() < 0.1
+
+
+@needs_shared
+@pytest.mark.parametrize("stride", [0.9, 0.95, 1.0, 1.05, 1.1])
+def test_recorded_wrists_lie_in_the_band_and_reach_its_rough_end(stride: float) -> None:
+    """At strides of a second, two of which fill a window, people's wrists are rougher too."""
+    assert SHARED is not None
+    found = [
+        swing.sparc
+        for name in ("walk01.bvh", "cmu_02_02_walk.bvh")
+        for wrist in recorded_wrists(Clip.load(SHARED / "motions" / name), stride)
+        if (swing := smoothness(wrist, RATE)) is not None
+    ]
+    low, high = wrist_sparc(stride)
+    assert len(found) == 4
+    assert max(found) < high
+    assert low == pytest.approx(min(-3.0, *found), abs=0.03)
+
+
+def recorded_wrists(clip: Clip, stride: float) -> list[Floats]:
+    """Both wrists (N, 3) of a walk as seen from the hips, its mean stride played again and again."""
+    phases = clip.planning.track.strides.phases
+    played = np.arange(0.0, 12.0, 1.0 / RATE) / stride
+    return [
+        harmonics(played)
+        @ np.linalg.lstsq(
+            harmonics(phases), (clip.motion.position(hand) - clip.motion.position("hips"))[: len(phases)]
+        )[0]
+        for hand in ("leftHand", "rightHand")
+    ]
+
+
+def harmonics(phases: Floats) -> Floats:
+    turns = 2.0 * np.pi * np.outer(phases, np.arange(1.0, 6.0))
+    return np.hstack([np.ones((len(phases), 1)), np.cos(turns), np.sin(turns)])
 
 
 def test_a_head_that_turns_first_leads() -> None:

@@ -77,7 +77,8 @@ def _show(report: "MotionReport") -> None:
     rows = {
         band.name: f"{_number(band.value)}, should be {band.wanted}" for band in bands if not band.inside
     }  # what is as it should be needs no words
-    print_row(f"{sum(band.inside for band in bands)} of {len(bands)} figures are a person's; the others:", rows)
+    others = "; the others:" if rows else ""
+    print_row(f"{len(bands) - len(rows)} of {len(bands)} figures are a person's{others}", rows)
 
 
 def _passage(passage: "Passage") -> str:

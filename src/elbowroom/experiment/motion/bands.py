@@ -3,8 +3,13 @@
 import math
 from dataclasses import dataclass
 
+import numpy as np
+
 STANCE_SHARES = ((0.5, 62.5), (0.8, 61.5), (1.1, 60.4), (1.4, 59.3), (2.0, 57.2))  # m/s, % of a stride: Kirtley 1985
 SHARE_WITHIN = 2.0  # %
+WRIST_SPARC = (-3.0, -2.4)  # of recorded wrists, where a window does not happen to hold whole strides
+_STRIDES = (0.9, 0.95, 1.0, 1.05, 1.1)  # seconds
+_ROUGHEST = (-3.07, -3.08, -3.25, -3.06, -2.92)  # SPARC of the wrists of two recorded walks at these
 
 
 @dataclass(frozen=True)
@@ -50,3 +55,12 @@ def stance_share(speed: float) -> float:
             return share + (next_share - share) * (speed - slow) / (fast - slow)
         slow, share = fast, next_share
     raise AssertionError
+
+
+def wrist_sparc(stride: float) -> tuple[float, float]:
+    """Where the SPARC of a swinging wrist should lie at a stride in seconds.
+
+    The measure is of windows of 2 s, which two strides of about a second fill: there recorded wrists have less too.
+    """
+    low, high = WRIST_SPARC
+    return min(low, float(np.interp(stride, _STRIDES, _ROUGHEST))), high

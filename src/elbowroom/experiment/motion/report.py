@@ -146,6 +146,7 @@ def _of_gait(gait: Gait) -> Sequence[Band]:
     within = bands.SHARE_WITHIN
     rows = [Band(f"{at}: stance", gait.stance_planned, share - within, share + within, "%")]
     if _NATURAL[0] <= gait.speed <= _NATURAL[1]:
+        wrist_sparc = bands.wrist_sparc(120.0 / gait.cadence)
         rows += [
             Band(f"{at}: pelvis up and down", seen.up_down, 3.0, 5.0, "cm"),
             Band(f"{at}: pelvis side to side", seen.side, 3.0, 6.0, "cm"),
@@ -161,7 +162,7 @@ def _of_gait(gait: Gait) -> Sequence[Band]:
                 at_most(f"{at}: {joint} beyond the published range", beyond, 0.0, "deg")
                 for joint, beyond in gait.curves.outside.items()
             ),
-            Band(f"{at}: wrist, SPARC", gait.wrist.sparc if gait.wrist else None, -3.0, -2.4, ""),
+            Band(f"{at}: wrist, SPARC", gait.wrist.sparc if gait.wrist else None, *wrist_sparc, ""),
             Band(f"{at}: wrist, log dimensionless jerk", gait.wrist.jerk if gait.wrist else None, -13.0, -11.5, ""),
             Band(f"{at}: pelvis, log dimensionless jerk", gait.pelvis.jerk if gait.pelvis else None, -12.0, -8.0, ""),
         ]
