@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.fitting.proportions import proportional_humanoid
+from elbowroom.body.gait.foot_state import SWING
 from elbowroom.body.gait.footholds import UNKNOWN, beside, onward
 from elbowroom.body.gait.living import Body, body_of, living
 from elbowroom.body.gait.stride import phase_rate
@@ -70,8 +71,8 @@ def random_wish(seed: int) -> Callable[[float], Velocities]:
 
 def random_feet(rng: np.random.Generator, roots: Floats) -> Floats:
     """Root states (N, 7) with feet anywhere near (N, WITH_FEET): flat or pitched, on the ground or in their swing."""
-    low = np.array([-0.1, -0.45, -0.6, -0.4, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0])
-    high = np.array([0.1, 0.45, 0.6, 1.1, 0.06, 0.99, 0.0, 0.0, 0.0, 0.0])
+    low, high = np.zeros(FOOT), np.zeros(FOOT)
+    low[:SWING], high[: SWING + 1] = [-0.1, -0.45, -0.6, -0.4, 0.0], [0.1, 0.45, 0.6, 1.1, 0.06, 0.99]
     feet = [rng.uniform(low, high, (len(roots), FOOT)) + np.eye(FOOT)[0] * aside for aside in (0.09, -0.09)]
     return np.hstack([roots, np.zeros((len(roots), ROOT_STATE - roots.shape[1])), *feet])
 

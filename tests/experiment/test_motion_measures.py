@@ -10,11 +10,19 @@ from elbowroom.body.humanoid import Humanoid
 from elbowroom.clips.clip import Clip
 from elbowroom.experiment.judge.poses import Posed, Poser
 from elbowroom.experiment.motion.angles import leg_angles
-from elbowroom.experiment.motion.bands import STANCE_SHARES, Band, stance_share, wrist_sparc
+from elbowroom.experiment.motion.bands import (
+    KNEE_ACCELERATION,
+    KNEE_SPEED,
+    STANCE_SHARES,
+    Band,
+    stance_share,
+    wrist_sparc,
+)
 from elbowroom.experiment.motion.curves import curves_of
 from elbowroom.experiment.motion.cycles import PARTS, in_strides, mean_range
 from elbowroom.experiment.motion.feet import FootTrack, feet
 from elbowroom.experiment.motion.gaps import Passage, onset
+from elbowroom.experiment.motion.knees import knees
 from elbowroom.experiment.motion.published import KNEE, PELVIC_TILT, corridors
 from elbowroom.experiment.motion.smooth import log_dimensionless_jerk, smoothness, sparc
 from elbowroom.experiment.motion.sole import soles_of
@@ -204,6 +212,35 @@ def test_recorded_wrists_lie_in_the_band_and_reach_its_rough_end(stride: float) 
     assert len(found) == 4
     assert max(found) < high
     assert low == pytest.approx(min(-3.0, *found), abs=0.03)
+
+
+def test_a_knee_that_swings_is_as_fast_as_its_sine_and_one_that_snaps_is_told() -> None:
+    t = np.arange(0.0, 20.0, 1.0 / RATE)
+    swings = 30.0 + 30.0 * np.sin(2.0 * np.pi * t)
+    found, omega = knees((swings, swings), RATE), 2.0 * np.pi
+    assert found.fastest == pytest.approx(30.0 * omega, rel=0.01)
+    assert found.speed == pytest.approx(30.0 * omega, rel=0.01)
+    assert found.acceleration == pytest.approx(30.0 * omega**2, rel=0.01)
+    snaps = swings.copy()
+    snaps[300::60] += 8.0  # degrees, in a frame of each second
+    assert knees((swings, snaps), RATE).acceleration > KNEE_ACCELERATION > 10.0 * found.acceleration
+
+
+@needs_shared
+def test_recorded_knees_have_nearly_as_much_as_the_band_allows() -> None:
+    assert SHARED is not None
+    clip = Clip.load(SHARED / "motions" / "cmu_02_02_walk.bvh")
+    found = [knees([recorded_knee(clip, side)], RATE) for side in ("left", "right")]
+    assert 0.9 * KNEE_SPEED < max(own.speed for own in found) < KNEE_SPEED
+    assert 0.9 * KNEE_ACCELERATION < max(own.acceleration for own in found) < KNEE_ACCELERATION
+
+
+def recorded_knee(clip: Clip, side: str) -> Floats:
+    """The flexion of a knee, degrees (N,), at 60 frames a second of a clip that has 120."""
+    hip, knee, ankle = (clip.motion.position(f"{side}{bone}")[::2] for bone in ("UpperLeg", "LowerLeg", "Foot"))
+    thigh, shin = knee - hip, ankle - knee
+    cosine = (thigh * shin).sum(axis=1) / np.linalg.norm(thigh, axis=1) / np.linalg.norm(shin, axis=1)
+    return np.asarray(np.degrees(np.arccos(np.clip(cosine, -1.0, 1.0))))
 
 
 def recorded_wrists(clip: Clip, stride: float) -> list[Floats]:

@@ -45,7 +45,7 @@ class RootState(NamedTuple):
 ROOT_STATE = len(RootState._fields)  # number of components of a root state array
 HEIGHT = RootState._fields.index("height")  # the first that is 0 on level ground; the climb is the next
 RISES = RootState._fields.index("left_rise")  # the first of four: rise and slope of both feet
-FOOT = 10  # numbers that say where a foot is and how it goes on, see `foot_state`
+FOOT = 12  # numbers that say where a foot is and how it goes on, see `foot_state`
 _TOLD_OF_FOOT = 9  # the first of them
 WITH_FEET = ROOT_STATE + 2 * FOOT  # number of components of a root state array with feet
 CARRIAGE = 13  # numbers that say how hips, chest and head are carried, see `carriage`
@@ -62,7 +62,7 @@ TOLD_FEET = 2 * _TOLD_OF_FOOT  # and of those of the feet in it, behind the root
 
 
 def told(rows: NDArray[np.float64]) -> NDArray[np.float64]:
-    """What is recorded (..., TOLD) of root states (..., SHOWN or less): all but how fast feet rise.
+    """What is recorded (..., TOLD) of root states (..., SHOWN or less): all but how fast feet rise and roll.
 
     That says how they go on. Numbers that the rows are without are 0.
     """
@@ -72,7 +72,7 @@ def told(rows: NDArray[np.float64]) -> NDArray[np.float64]:
 
 
 def as_told(recorded: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Root states (..., SHOWN) of which (..., TOLD) is recorded, with feet that do not rise."""
+    """Root states (..., SHOWN) of which (..., TOLD) is recorded, with feet that neither rise nor roll."""
     rows = np.zeros((*recorded.shape[:-1], SHOWN))
     rows[..., _TOLD] = recorded
     return rows

@@ -203,13 +203,18 @@ def _foot_pose(legs: Floats, stride: Stride, side: int, u: float, out: Floats) -
     tilt_foot(legs, side, (x, z, yaw), roll_of(stride, u), ease_of(stride.ahead, w), out)
 
 
+@inner_kernel
+def too_high(foot: Floats, hip: tuple[float, float, float], reach: float) -> float:
+    """How far a hip is above where its foot (6,) is as far from it as it reaches, metres; below it less than 0."""
+    x, z = foot[0] - hip[0], foot[2] - hip[2]
+    return float(hip[1] - foot[1] - np.sqrt(max(reach * reach - x * x - z * z, 0.25 * reach * reach)))
+
+
 @helper
 def _needed_drop(legs: Floats, side: int, foot: Floats, stretch: float) -> float:
     """How far the pelvis must come down for the leg to reach the ankle."""
-    length = stretch * (legs[side, _THIGH] + legs[side, _SHIN])
-    dx, dz = foot[0] - legs[side, _HIP], foot[2] - legs[side, _HIP + 2]
-    reach = np.sqrt(max(length * length - dx * dx - dz * dz, 0.25 * length * length))
-    return float(max(legs[side, _HIP + 1] - foot[1] - reach, 0.0))
+    hip = (legs[side, _HIP], legs[side, _HIP + 1], legs[side, _HIP + 2])
+    return float(max(too_high(foot, hip, stretch * (legs[side, _THIGH] + legs[side, _SHIN])), 0.0))
 
 
 @inner_kernel

@@ -12,15 +12,17 @@ from elbowroom.jit import exact_kernel, inner_exact_kernel
 
 Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
+Goal = tuple[float, float]  # what a number is or should be, and how fast that changes
 
 # Places of a foot's numbers: x, z, yaw of the flat foot in the root's frame, pitch, lift above the ground, how much of
-# its swing is over (0: it stands), the velocity of x, z and yaw over the ground, in the axes of the root, and how fast
-# what it stands on or swings over rises.
-X, Z, YAW, PITCH, LIFT, SWING, VELOCITY, RISING = 0, 1, 2, 3, 4, 5, 6, 9
+# its swing is over (0: it stands), the velocity of x, z and yaw over the ground, in the axes of the root, how fast
+# what it stands on or swings over rises, and how fast its pitch and its lift change.
+X, Z, YAW, PITCH, LIFT, SWING, VELOCITY, RISING, ROLLING, LIFTING = 0, 1, 2, 3, 4, 5, 6, 9, 10, 11
 
 FLAT = 1e-9  # radians, metres
-LIFT_RATE = 1.5  # m/s: no foot is lifted or lowered faster; a recorded one is
-_ROLL_RATE, _SLAP = 14.0, 6.0  # rad/s: nor tilted; nor do the toes of one that stands on its heel come down
+_SLIGHT = 1e-4  # radians, metres, and that a second: so much is as good as none
+LIFT_RATE = 1.5  # m/s: no foot that glides is lifted or lowered faster
+_ROLL_RATE = 10.0  # rad/s: nor tilted
 _STILL = 1e-3  # m/s: below, the root rests
 
 
@@ -65,16 +67,32 @@ def is_flat(foot: Floats) -> bool:
 @inner_exact_kernel
 def land(foot: Floats) -> None:
     """Let a foot stand where it is."""
-    foot[SWING] = foot[LIFT] = foot[RISING] = 0.0
+    foot[SWING] = foot[LIFT] = foot[RISING] = foot[LIFTING] = 0.0
     for i in range(3):
         foot[VELOCITY + i] = 0.0
 
 
 @inner_exact_kernel
+def eased(is_now: Goal, before: Goal, now: Goal, soon: float, dt: float) -> Goal:
+    """A number of a foot `dt` later, and how fast it changes then: it goes on with its goals of before and now.
+
+    Without a jump of its rate: what it is beside its goal fades as by a critically damped spring, the sooner the
+    greater `soon`, 1/s.
+    """
+    beside, rate = is_now[0] - before[0], is_now[1] - before[1]
+    left, led = np.exp(-soon * dt), rate + soon * beside
+    beside, rate = (beside + led * dt) * left, (rate - soon * led * dt) * left
+    if abs(beside) < _SLIGHT and abs(rate) < _SLIGHT:
+        return now
+    return now[0] + beside, now[1] + rate
+
+
+@inner_exact_kernel
 def tilt(foot: Floats, pitch: float, dt: float) -> None:
-    """Pitch a foot towards what it should be, no faster than feet roll."""
-    most = dt * (_SLAP if foot[PITCH] < 0.0 and foot[SWING] <= 0.0 else _ROLL_RATE)
+    """Pitch a foot that glides towards what it should be, no faster than feet roll."""
+    was, most = foot[PITCH], dt * _ROLL_RATE
     foot[PITCH] += min(max(pitch - foot[PITCH], -most), most)
+    foot[ROLLING] = (foot[PITCH] - was) / dt if dt > 0.0 else 0.0
 
 
 def standing(rows: ArrayLike) -> Bools:

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.gait.cycle import GaitShape, home_of
-from elbowroom.body.gait.foot_state import SWING, X, Z, carry, is_flat, tilt
+from elbowroom.body.gait.foot_state import PITCH, ROLLING, SWING, Goal, X, Z, carry, eased, is_flat
 from elbowroom.body.gait.landing_places import (
     FARTHER,
     LOWER,
@@ -43,6 +43,8 @@ from elbowroom.jit import brief_exact_kernel, brief_kernel, helper, inner_exact_
 Floats = NDArray[np.float64]
 
 _LEFT, _RIGHT = plain(0), plain(1)
+_LAST, _MOMENT = 1.0 - 1e-9, 1e-4  # of a stance; of the cycle, over which it is seen how fast it goes
+_ROLLS = 25.0  # 1/s: how soon what a foot that stands is pitched beside its cycle fades
 _NEARLY_AT_REST = 0.3  # m/s of a standard leg: who goes slower may be about to stop, and keeps his heels down
 
 ON_THE_PLANE = np.zeros((2, 2))  # how feet land there, `FARTHER` and `LOWER`
@@ -61,12 +63,24 @@ def _beside(legs: Floats, scale: float, root: Floats, out: Floats) -> None:
 
 
 @helper
-def _pitch_in_stance(own: OwnSteps, legs: Floats, stride: Stride, side: int, foot: Floats) -> float:
-    """How a standing foot wants to be pitched: by how far the root has passed it; flat under who comes to rest."""
+def _pitch_at(own: OwnSteps, stride: Stride, side: int, u: float, pace: float) -> Goal:
+    """Pitch of the cycle at a place in its stance, and how fast it changes where that goes on at a pace, 1/s."""
+    first = min(u, stride.duty * _LAST - _MOMENT)
+    before, _ = own_roll(own, stride, side, max(first, 0.0))
+    after, _ = own_roll(own, stride, side, max(first, 0.0) + _MOMENT)
+    pitch, _ = own_roll(own, stride, side, u)
+    return pitch, pace * (after - before) / _MOMENT
+
+
+@helper
+def _roll_in_stance(own: OwnSteps, legs: Floats, stride: Stride, side: int, foot: Floats, dt: float) -> None:
+    """Roll a standing foot by how far the root has passed it; flat under who comes to rest."""
     goes = min(stride.speed * stride.speed / (_NEARLY_AT_REST * _NEARLY_AT_REST * stride.scale), 1.0)
-    u = 0.5 * stride.duty + goes * passed_ago(own, legs, stride, side, foot) / stride.period
-    pitch, _ = own_roll(own, stride, side, min(max(u, 0.0), stride.duty * (1.0 - 1e-9)))
-    return pitch
+    u, most = 0.5 * stride.duty + goes * passed_ago(own, legs, stride, side, foot) / stride.period, stride.duty * _LAST
+    then, later = min(max(u - goes * dt / stride.period, 0.0), most), min(max(u, 0.0), most)
+    pace = goes / stride.period
+    was, now = _pitch_at(own, stride, side, then, pace), _pitch_at(own, stride, side, later, pace)
+    foot[PITCH], foot[ROLLING] = eased((foot[PITCH], foot[ROLLING]), was, now, _ROLLS, dt)
 
 
 @brief_exact_kernel
@@ -95,12 +109,12 @@ def step_feet(
         if max(left, right) > 0.0:
             lifted = 0 if left >= right else 1
     for side in range(2):
-        (foot, twin), pitch = (one, other) if side == 0 else (other, one), 0.0
+        foot, twin = (one, other) if side == 0 else (other, one)
         if foot[SWING] > 0.0 or lifted == side:
             since = dt
             if lifted == side:
                 since = lifted_since(stride, side, root, dt)
-                tilt(foot, _pitch_in_stance(own, legs, stride, side, foot), dt - since)
+                _roll_in_stance(own, legs, stride, side, foot, dt - since)
             left = max(time_to_landing(own, legs, stride, side, root, foot, twin, since), 0.0)
             until = left if left > 0.0 else -landed_since(stride, side, root, dt)
             farther, way = lands[side, FARTHER], way_over(stride, lands[side, LOWER])
@@ -111,10 +125,9 @@ def step_feet(
                 left, rest = needed, needed / (TO_REST * np.sqrt(scale))
                 goal = landing_place(who, side, root, twin, coming, left, farther, later)
                 foot[SWING] = min(foot[SWING], max(1.0 - rest, 0.2))
-            pitch = swing_foot(own, stride, side, goal, (since, left), way, foot, twin)
-        if foot[SWING] <= 0.0:
-            pitch = _pitch_in_stance(own, legs, stride, side, foot)
-        tilt(foot, pitch, dt)
+            swing_foot(own, stride, side, goal, (since, left), way, foot, twin)
+        else:
+            _roll_in_stance(own, legs, stride, side, foot, dt)
 
 
 @inner_exact_kernel

@@ -8,6 +8,7 @@ from elbowroom.body.gait.foot_state import (
     FLAT,
     LIFT,
     LIFT_RATE,
+    LIFTING,
     PITCH,
     RISING,
     SWING,
@@ -22,6 +23,7 @@ from elbowroom.body.gait.foot_state import (
     rests,
     tilt,
 )
+from elbowroom.body.gait.stepping_times import TURNING
 from elbowroom.body.gait.stride import stride_at
 from elbowroom.body.root import FOOT, ROOT_STATE, WITH_FEET
 from elbowroom.jit import brief_exact_kernel
@@ -29,6 +31,7 @@ from elbowroom.jit import brief_exact_kernel
 Floats = NDArray[np.float64]
 
 _GLIDE, _PIVOT = 1.5, 5.0  # m/s of a standard leg, and rad/s, by which feet glide into the cycle
+_SKIM, _OFF = 0.03, 0.06  # metres of a standard leg that a foot is lifted which is so far beside the cycle, or more
 _AT_LEAST = 0.2  # of its swing is over, for a foot that does
 
 
@@ -58,7 +61,10 @@ def glide_feet(legs: Floats, scale: float, before: Floats, root: Floats, dt: flo
         twisted = max(1.0 - dt * _PIVOT / max(abs(turned), 1e-9), 0.0)
         stayed = foot[X], foot[Z], foot[YAW]  # where it would be if it stood
         foot[X], foot[Z], foot[YAW] = x + left * dx, z + left * dz, yaw + twisted * turned
+        off = left * np.hypot(dx, dz) + TURNING * scale * twisted * abs(turned)
+        lift = max(lift, _SKIM * scale * min(off / (_OFF * scale), 1.0))
         foot[LIFT] = was[LIFT] + min(max(lift - was[LIFT], -LIFT_RATE * dt), LIFT_RATE * dt)
+        foot[LIFTING] = (foot[LIFT] - was[LIFT]) / dt if dt > 0.0 else 0.0
         foot[PITCH] = was[PITCH]
         tilt(foot, pitch, dt)
         if max(left, twisted) > 0.0:

@@ -16,7 +16,7 @@ from elbowroom.jit import inner_exact_kernel, plain
 Floats = NDArray[np.float64]
 
 TWISTED = 0.9  # radians: a standing foot that is turned farther has to follow soon
-ALMOST = 0.999  # of a swing is all of it
+_ALMOST = 0.999  # of a swing is all of it
 _CLOSED, _TURNED = 0.012, 0.05  # metres of a standard leg, radians: feet so near their place need no step
 _APART, _LONG = 0.13, 0.35  # metres of a standard leg: so far a foot keeps beside the other, if no farther ahead of it
 _TOES_IN = 0.4  # radians: toes of one foot point no farther across the other
@@ -132,7 +132,7 @@ def way_over(stride: Stride, lower: float) -> float:
 @inner_exact_kernel
 def time_over(foot: Floats, way: float, left: float) -> float:
     """Seconds until a swinging foot that lands in `left` is over its place, after the part `way` of its swing."""
-    return float(left * max(way - foot[SWING], 0.0) / max(1.0 - foot[SWING], 1.0 - ALMOST))
+    return float(left * max(way - foot[SWING], 0.0) / max(1.0 - foot[SWING], 1.0 - _ALMOST))
 
 
 @inner_exact_kernel

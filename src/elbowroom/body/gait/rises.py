@@ -10,6 +10,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from elbowroom.body.gait.cycle import too_high
 from elbowroom.body.root import RISES
 from elbowroom.jit import inner_kernel, kernel
 
@@ -40,15 +41,6 @@ def raise_foot(foot: Floats, ahead: float, rise: float, slope: float) -> None:
     foot[4] += slope
 
 
-@inner_kernel
-def drop_to(legs: Floats, side: int, foot: Floats, stretch: float) -> float:
-    """How far below T-pose the hips are so that a leg, which is stretched so far at most, reaches its foot (6,)."""
-    length = stretch * (legs[side, _THIGH] + legs[side, _SHIN])
-    dx, dz = foot[0] - legs[side, _HIP], foot[2] - legs[side, _HIP + 2]
-    reach = math.sqrt(max(length * length - dx * dx - dz * dz, 0.25 * length * length))
-    return float(legs[side, _HIP + 1] - foot[1] - reach)
-
-
 @kernel
 def raise_feet(legs: Floats, roots: Floats, feet: Floats, drops: Floats) -> None:
     """Put `feet` (N, 2, 6) and the hips' `drops` (N,) of the cycle on the ground that `roots` (N, ROOT_STATE) tell of.
@@ -63,4 +55,5 @@ def raise_feet(legs: Floats, roots: Floats, feet: Floats, drops: Floats) -> None
             pitch, pivot = foot[4], legs[side, _BALL] if foot[4] > 0.0 else -legs[side, _HEEL]
             ahead = pivot - pivot * math.cos(pitch) + legs[side, _ANKLE + 1] * math.sin(pitch)
             raise_foot(foot, ahead, roots[n, at], roots[n, at + 1])
-            drops[n] = max(drops[n], drop_to(legs, side, foot, STRETCH))
+            hip = (legs[side, _HIP], legs[side, _HIP + 1], legs[side, _HIP + 2])
+            drops[n] = max(drops[n], too_high(foot, hip, STRETCH * (legs[side, _THIGH] + legs[side, _SHIN])))

@@ -11,13 +11,13 @@ from elbowroom.body.gait.cycle import roll_of
 from elbowroom.body.gait.stride import Stride
 from elbowroom.jit import helper, inner_kernel
 
-_STRIKE, _FLAT = 0.261, 0.14  # radians, toes up, at heel strike; part of the stance at which the foot is flat
-_RISE, _ROLL = 0.694, 3.34  # part of the stance from which the heel rises; how late it does so
-_TOE_OFF, _ROLLING = 0.966, 3.8  # radians of pitch where the toes leave the ground; how fast it grows there, a swing
-_LESS = 0.485  # radians, by which the pitch is less than that would lead to, in the middle of the swing
+_STRIKE, _FLAT = 0.278, 0.16  # radians, toes up, at heel strike; part of the stance at which the foot is flat
+_RISE, _ROLL = 0.675, 3.5  # part of the stance from which the heel rises; how late it does so
+_TOE_OFF, _ROLLING = 0.995, 3.5  # radians of pitch where the toes leave the ground; how fast it grows there, a swing
+_LESS = 0.44  # radians, by which the pitch is less than that would lead to, in the middle of the swing
 _LEAST = 0.028  # metres that a standard leg's foot is lifted in any step
 _CREEP = 0.03  # m/s: steps that are hardly as quick lead nowhere
-_LIFT, _EARLY, _SOON = 0.078, 0.5, 0.6  # metres of a standard leg; how much of them comes early, and how soon
+_LIFT, _SLOWLY, _SOON = 0.078, 1.55, 2.9  # metres of a standard leg; the powers by which they begin and end
 
 
 @inner_kernel
@@ -53,8 +53,8 @@ def _pitch(u: float, duty: float) -> float:
 @inner_kernel
 def _lift(w: float) -> float:
     """How high a foot is lifted when `w` of its swing is over, in parts of `_LIFT`."""
-    later = w**_SOON
-    return float(16.0 * (later * (1.0 - later)) ** 2 * (1.0 + _EARLY * (1.0 - 2.0 * later)))
+    top = _SLOWLY / (_SLOWLY + _SOON)
+    return float((w / top) ** _SLOWLY * ((1.0 - w) / (1.0 - top)) ** _SOON)
 
 
 @inner_kernel

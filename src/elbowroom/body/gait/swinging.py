@@ -3,8 +3,8 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.body.gait.foot_state import LIFT, LIFT_RATE, PITCH, SWING, VELOCITY, YAW, X, Z, land
-from elbowroom.body.gait.landing_places import ALMOST, beside_twin
+from elbowroom.body.gait.foot_state import LIFT, LIFTING, PITCH, ROLLING, SWING, VELOCITY, YAW, Goal, X, Z, eased, land
+from elbowroom.body.gait.landing_places import beside_twin
 from elbowroom.body.gait.own_steps import OwnSteps, own_detour, own_roll
 from elbowroom.body.gait.roll import least_lift
 from elbowroom.body.gait.stepping_times import TURNING
@@ -13,8 +13,9 @@ from elbowroom.jit import helper, inner_exact_kernel
 
 Floats = NDArray[np.float64]
 
-_HASTE = 2.0  # times as fast as else a foot of a recorded walk is lifted
-_SLOWLY, _RISEN = 0.1, 0.15  # of how fast a foot is lifted, as it leaves the ground; of its swing until all of it
+_LIFTS, _ROLLS = 16.0, 10.0  # 1/s: how soon what a foot is lifted and pitched beside its cycle fades
+_LANDS = 4.0  # the same, in parts of the time that is left until it lands, where that is sooner
+_MOMENT = 1e-4  # of a swing, over which it is seen how fast it goes
 _THERE, _LATE_SPEED = 0.004, 1.0  # metres from its place; m/s by which it goes on to another one; of a standard leg
 
 
@@ -44,9 +45,14 @@ def _time_over_ground(
 
 
 @helper
-def _kept(w: float) -> float:
-    """How much is left, when `w` of its swing is over, of what a foot was pitched otherwise than in an even walk."""
-    return float((1.0 - w) * (1.0 - w) * (1.0 + 2.0 * w))
+def _goes(own: OwnSteps, stride: Stride, side: int, w: float, pace: float) -> tuple[Goal, Goal]:
+    """Pitch and lift, each with its rate, when `w` of a swing is over that goes on at a pace, 1/s."""
+    rest, first = 1.0 - stride.duty, min(w, 1.0 - _MOMENT)
+    before, low = own_roll(own, stride, side, stride.duty + rest * first)
+    after, high = own_roll(own, stride, side, stride.duty + rest * (first + _MOMENT))
+    low, high = max(low, least_lift(stride, first)), max(high, least_lift(stride, first + _MOMENT))
+    u, pace = (w - first) / _MOMENT, pace / _MOMENT
+    return (before + u * (after - before), pace * (after - before)), (low + u * (high - low), pace * (high - low))
 
 
 @inner_exact_kernel
@@ -59,8 +65,8 @@ def swing_foot(
     way: float,
     foot: Floats,
     twin: Floats,
-) -> float:
-    """Let a foot swing for so many seconds, so that it lands so many after their end; the pitch that it wants.
+) -> None:
+    """Let a foot swing for so many seconds, so that it lands so many after their end.
 
     It is over its place after the part `way` of its swing, before it comes down: it would rub over the ground, in steps
     aside and round, or over an edge.
@@ -83,13 +89,11 @@ def swing_foot(
     foot[X] -= sag * 16.0 * ((there * (1.0 - there)) ** 2 - (over * (1.0 - over)) ** 2)
     x, z = beside_twin(side, foot[X] - twin[X], foot[Z] - twin[Z], 0.0, stride.scale)
     foot[X], foot[Z], foot[SWING] = twin[X] + x, twin[Z] + z, after
-    rest = 1.0 - stride.duty
-    left_off, _ = own_roll(own, stride, side, stride.duty + rest * done)
-    pitch, lift = own_roll(own, stride, side, stride.duty + rest * after)
-    pitch += (foot[PITCH] - left_off) * _kept(after) / max(_kept(done), _kept(ALMOST))
-    low = least_lift(stride, after)
-    most = LIFT_RATE * dt * min(_SLOWLY + after / _RISEN, 1.0) * (1.0 if own.speed <= 0.0 else _HASTE)
-    foot[LIFT] += min(max(max(lift, low) - foot[LIFT], -most), most)
+    pace = (1.0 - done) / (left + dt)
+    (pitch, lift), (next_pitch, next_lift) = _goes(own, stride, side, done, pace), _goes(own, stride, side, after, pace)
+    rolls, lifts = max(_ROLLS, _LANDS / (left + dt)), max(_LIFTS, _LANDS / (left + dt))
+    foot[PITCH], foot[ROLLING] = eased((foot[PITCH], foot[ROLLING]), pitch, next_pitch, rolls, dt)
+    foot[LIFT], foot[LIFTING] = eased((foot[LIFT], foot[LIFTING]), lift, next_lift, lifts, dt)
+    foot[LIFT] = max(foot[LIFT], 0.0)
     if left <= 0.0:
         land(foot)
-    return float(pitch)

@@ -14,6 +14,7 @@ from elbowroom.experiment.motion.settings import MotionSettings
 if TYPE_CHECKING:
     from elbowroom.experiment.motion.feet import Feet
     from elbowroom.experiment.motion.gaps import Passage
+    from elbowroom.experiment.motion.knees import Knees
     from elbowroom.experiment.motion.report import Gait, MotionReport
 
 EXAMPLES = """Examples:  elbowroom bench motion  |  elbowroom bench motion --case steady --speeds 1.1 --plots pictures
@@ -67,7 +68,7 @@ def _speeds(text: str) -> tuple[float, ...]:
 
 def _show(report: "MotionReport") -> None:
     for name, own in report.feet.items():
-        print_row(f"{name}: feet", _feet(own))
+        print_row(f"{name}: feet", _feet(own) | {"knees": _knees(report.knees[name])})
     for gait in report.gaits:
         print_row(f"{gait.speed:g} m/s", _gait(gait))
     if report.narrow is not None:
@@ -94,6 +95,10 @@ def _feet(own: "Feet") -> dict[str, str]:
         for name, found in (("slide, as planned", own.as_planned), ("slide, by looks", own.by_looks))
     }
     return rows | {"in the ground": f"{own.in_ground:.1f} mm", "swing clears": f"{_number(own.clearance)} mm"}
+
+
+def _knees(found: "Knees") -> str:
+    return f"{found.speed:.0f} deg/s (99 %), {found.fastest:.0f} (all), {found.acceleration:,.0f} deg/s2 (99.5 %)"
 
 
 def _gait(gait: "Gait") -> dict[str, str]:

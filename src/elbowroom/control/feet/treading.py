@@ -29,6 +29,7 @@ _SOON = 1e-3  # seconds: who will be over his place so soon is there
 _NEAR = 1e-4  # m²: who is no farther from where a foot lands goes there as it comes
 HASTY, TURNS = 4.0, 4.0  # m/s that a foot rises or comes down by at most; radians that its sole may turn for a metre
 _UP, _SPURT = 3.0, 45.0  # m/s that a foot rises by at most, and m/s² by which that changes
+_GLIDES = 1.5  # m/s that a foot that glides rises or comes down by at most, over what it does not come against
 _SLIGHT = 1e-3  # metres: what a foot comes against by less is not gone over
 _EASE = 2.0  # how much faster than evenly a sole is tilted: the power of the time that is left
 
@@ -151,5 +152,7 @@ def tread_gliding(under: Underfoot, before: Floats, row: Floats, dt: float, hold
             now, row[at + 1] = _settled(under, row, side, (was, before[at + 1]), HASTY * dt)
         else:
             lies, _ = stood_at(under.ground, under.sole, row, foot[X], foot[Z], foot[YAW])
+            if foot[SWING] > 0.0:
+                now = min(max(now, was - _GLIDES * dt), was + _GLIDES * dt)
             now = max(now, min(lies, was + HASTY * dt))
         row[at] = now - row[HEIGHT]

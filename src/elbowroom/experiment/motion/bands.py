@@ -8,6 +8,7 @@ import numpy as np
 STANCE_SHARES = ((0.5, 62.5), (0.8, 61.5), (1.1, 60.4), (1.4, 59.3), (2.0, 57.2))  # m/s, % of a stride: Kirtley 1985
 SHARE_WITHIN = 2.0  # %
 WRIST_SPARC = (-3.0, -2.4)  # of recorded wrists, where a window does not happen to hold whole strides
+KNEE_SPEED, KNEE_ACCELERATION = 700.0, 25_000.0  # deg/s, deg/s²: recorded ones have nearly as much
 _STRIDES = (0.9, 0.95, 1.0, 1.05, 1.1)  # seconds
 _ROUGHEST = (-3.07, -3.08, -3.25, -3.06, -2.92)  # SPARC of the wrists of two recorded walks at these
 

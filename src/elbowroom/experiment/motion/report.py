@@ -15,6 +15,7 @@ from elbowroom.experiment.motion.cost import Cost, cost
 from elbowroom.experiment.motion.curves import Curves, curves
 from elbowroom.experiment.motion.feet import Feet, FootTrack, feet, foot_tracks
 from elbowroom.experiment.motion.gaps import Narrow, narrow, pass_gap
+from elbowroom.experiment.motion.knees import Knees, flexions, knees
 from elbowroom.experiment.motion.scripts import Script, scripts
 from elbowroom.experiment.motion.settings import GAPS, STEADY, UNEVEN, MotionSettings
 from elbowroom.experiment.motion.smooth import Smoothness, smoothness
@@ -51,6 +52,7 @@ class MotionReport:
     avatar: str
     settings: MotionSettings
     feet: dict[str, Feet]  # by case
+    knees: dict[str, Knees]  # by case
     gaits: tuple[Gait, ...]  # by speed
     narrow: Narrow | None
     head_lead: float | None  # seconds, at a turn by 90 degrees
@@ -63,17 +65,20 @@ class MotionReport:
 
     def bands(self) -> tuple[Band, ...]:
         """The figures that people have published ranges for."""
-        return tuple(chain(_of_feet(self.feet), *map(_of_gait, self.gaits), _of_narrow(self.narrow), _of_rest(self)))
+        legs = chain(_of_feet(self.feet), *map(_of_knees, self.knees.items()))
+        return tuple(chain(legs, *map(_of_gait, self.gaits), _of_narrow(self.narrow), _of_rest(self)))
 
 
 def run(humanoid: Humanoid, settings: MotionSettings, tick: Callable[[int], None] = lambda _: None) -> MotionReport:
     """Walk and measure; `tick` hears how many walks are done."""
     soles, done = soles_of(humanoid), 0
     tracks: dict[str, list[FootTrack]] = {}
+    bent: dict[str, list[Floats]] = {}
     gaits, lead = [], None
     for script in _chosen(settings):
         walked = walk(humanoid, script)
         tracks.setdefault(script.case, []).extend(own := foot_tracks(walked, soles))
+        bent.setdefault(script.case, []).extend(flexions(walked, humanoid.skeleton))
         if script.case == STEADY:
             gaits.append(_gait(walked, humanoid, own))
         if script.case == _TURN:
@@ -87,6 +92,7 @@ def run(humanoid: Humanoid, settings: MotionSettings, tick: Callable[[int], None
         avatar=humanoid.name,
         settings=settings,
         feet={case: feet(own) for case, own in tracks.items()},
+        knees={case: knees(own) for case, own in bent.items()},
         gaits=tuple(gaits),
         narrow=narrow(humanoid, tuple(passages)) if passages else None,
         head_lead=lead,
@@ -139,6 +145,14 @@ def _of_feet(found: dict[str, Feet]) -> Sequence[Band]:
     if STEADY in found:
         rows.append(Band(f"{STEADY}: clearance of the swinging foot", found[STEADY].clearance, 10.0, 25.0, "mm"))
     return rows
+
+
+def _of_knees(named: tuple[str, Knees]) -> Sequence[Band]:
+    case, found = named
+    return (
+        at_most(f"{case}: a knee's speed, 99 %", found.speed, bands.KNEE_SPEED, "deg/s"),
+        at_most(f"{case}: a knee's acceleration, 99.5 %", found.acceleration, bands.KNEE_ACCELERATION, "deg/s2"),
+    )
 
 
 def _of_gait(gait: Gait) -> Sequence[Band]:
