@@ -18,6 +18,7 @@ from elbowroom.experiment.motion.report import MotionReport, amount, run
 from elbowroom.experiment.motion.scripts import at_speed, scripts, steady
 from elbowroom.experiment.motion.settings import SCRIPTED, SPEEDS, MotionSettings
 from elbowroom.experiment.motion.walked import walk
+from shared_data import SHARED, needs_shared
 
 
 def test_every_case_of_the_issue_is_walked() -> None:
@@ -68,6 +69,18 @@ def test_knees_do_not_snap(report: MotionReport) -> None:
         assert found.speed < KNEE_SPEED
         assert found.acceleration < KNEE_ACCELERATION
         assert found.fastest < 700.0
+
+
+@needs_shared
+@pytest.mark.parametrize("avatar", ["hanim_vrml97/sample1.wrl", "hanim_x3d/KoreanCharacter02Chul.x3d"])
+def test_feet_of_strangers_stand_on_their_soles(avatar: str) -> None:
+    """They slid by 34 and 43 mm, and were 56 and 25 mm in the ground."""
+    assert SHARED is not None
+    feet = run(Humanoid.load(SHARED / "avatars" / avatar), MotionSettings(("steady",), (1.1,), ())).feet["steady"]
+    assert feet.as_planned.stances > 10
+    assert feet.as_planned.worst < 2.0
+    assert feet.by_looks.worst < 2.0
+    assert feet.in_ground < 1.0
 
 
 def test_a_report_has_figures_bands_and_pictures(report: MotionReport) -> None:

@@ -352,6 +352,8 @@ def test_hair_that_is_counted_in_is_judged(tmp_path: Path) -> None:
     assert with_it is not None
     assert len(with_it.triangles) == len(ring_body().triangles)
     assert len(without.triangles) < len(with_it.triangles)
+    everything = range(int(without.joints.max()) + 1)  # joints
+    assert np.array_equal(without.most_on(everything), np.unique(without.triangles))  # what is left out is no sole
 
 
 def test_regions() -> None:

@@ -9,6 +9,7 @@ from elbowroom.body.loading.permissions import Permissions
 from elbowroom.body.loading.settings import LoadSettings
 from elbowroom.body.rig import Rig
 from elbowroom.body.skeleton import Skeleton
+from elbowroom.body.soles import Soles
 
 
 @dataclass(frozen=True)
@@ -48,6 +49,7 @@ class Humanoid:
     meta: AvatarMeta = field(default_factory=AvatarMeta)  # title, author, licence, how each bone was found
     settings: LoadSettings = field(default_factory=LoadSettings)  # that it was read with; the bones that were told
     glb: bytes | None = None  # the file as one self-contained GLB, for a viewer; None without a file
+    soles: Soles | None = None  # how its feet roll; None: as those of average proportions
 
     @classmethod
     def load(cls, path: str | Path, settings: LoadSettings | None = None) -> "Humanoid":

@@ -12,13 +12,14 @@ from numpy.typing import NDArray
 from elbowroom.body.gait.cycle import GaitShape
 from elbowroom.body.gait.own_steps import AHEAD, ASIDE, KEYS, LIFT, PATH, PITCH, YAW, OwnSteps
 from elbowroom.body.gait.stride import stride_of
+from elbowroom.body.gait.tilted_foot import rolled
 from elbowroom.clips.body_motion import BodyMotion
 from elbowroom.clips.carried import facing, middle_of_hips
 from elbowroom.geometry import quaternion
 
 Floats = NDArray[np.float64]
 
-_HIP, _ANKLE, _BALL, _HEEL, _THIGH, _SHIN, _TOES = 0, 3, 6, 7, 8, 9, 10  # columns of `GaitShape.legs`
+_HIP, _ANKLE, _THIGH, _SHIN = 0, 3, 8, 9  # columns of `GaitShape.legs`
 _X, _Z = 0, 1  # of what is seen of a foot; then its yaw, its pitch and its lift, as in the cycle
 SPAN = 4  # numbers of a leg from hip to ankle
 _SAMPLES = 256  # of a stride, in which landing and lifting are looked for
@@ -49,7 +50,7 @@ def legs_seen(motion: BodyMotion, gait: GaitShape) -> tuple[Floats, Floats, Floa
         across, ahead = (quaternion.rotate(turn, axis) for axis in (np.eye(3)[0], np.eye(3)[2]))
         yaw = np.arctan2(-across[:, 2], across[:, 0])
         pitch = np.arctan2(-ahead[:, 1], ahead[:, 0] * np.sin(yaw) + ahead[:, 2] * np.cos(yaw))
-        along, height = _tilted(legs, pitch)
+        along, height = rolled(legs, pitch)
         x, _, z = quaternion.rotate(turned, ankle - middle).T
         seen[:, side] = np.stack(
             [x - along * np.sin(yaw), z - along * np.cos(yaw), yaw, pitch, ankle[:, 1] - height], axis=1
@@ -58,16 +59,6 @@ def legs_seen(motion: BodyMotion, gait: GaitShape) -> tuple[Floats, Floats, Floa
     spans[..., 3] = np.linalg.norm(spans[..., :3], axis=-1)
     straight = gait.legs[:, [_ANKLE + 1, _THIGH, _SHIN]].sum(axis=1).mean()
     return middle[:, 1] - straight, seen, spans
-
-
-def _tilted(legs: Floats, pitch: Floats) -> tuple[Floats, Floats]:
-    """How far (F,) the ankle of a pitched foot on the ground is ahead of where it is flat, and how high it is."""
-    sine, cosine = np.sin(pitch), np.cos(pitch)
-    down, up = np.maximum(sine, 0.0), np.maximum(-sine, 0.0)
-    pivot, over = np.where(pitch > 0.0, legs[_BALL], -legs[_HEEL]), np.where(pitch > 0.0, 1.0 - cosine, 0.0)
-    along: Floats = legs[_ANKLE + 1] * sine - legs[_TOES] * down + pivot * (1.0 - cosine)
-    height: Floats = legs[_ANKLE + 1] * cosine + legs[_BALL] * down + legs[_HEEL] * up + legs[_TOES] * over
-    return along, height
 
 
 class Recorded(NamedTuple):

@@ -14,21 +14,22 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.gait.stride import CLIMB, STANDARD_LEG, Stride, climbing_stride, stride_at
+from elbowroom.body.gait.tilted_foot import bump, ease_of, own_roll, tilt_foot
 from elbowroom.body.skeleton import Skeleton
+from elbowroom.body.soles import PITCHES, Soles
 from elbowroom.jit import helper, inner_kernel, kernel
 
 Floats = NDArray[np.float64]
 
 # Columns of `GaitShape.legs`: hip and ankle in T-pose (root frame), ball before and heel behind the ankle, thigh, shin,
-# height of the toes' joint above the sole.
-_HIP, _ANKLE, _BALL, _HEEL, _THIGH, _SHIN, _TOES = 0, 3, 6, 7, 8, 9, 10
+# height of the toes' joint above the sole, how much its heel rises of what it would; from there on how much farther
+# ahead, and higher, its own feet have the ankle at `PITCHES`.
+_HIP, _ANKLE, _THIGH, _SHIN, _OWN = 0, 3, 8, 9, 12
 
 _HEEL_STRIKE, _TOE_OFF = 0.292, 0.92  # radians of foot pitch
 _FLAT, _RISE = 0.16, 0.45  # of the stance: from when on the foot is flat, and its heel rises
 _ROLL, _ROLLING = 4.0, 0.5  # how late the heel rises, and how fast it still does so at toe-off
 _LIFT, _EARLY = 0.056, 0.6  # metres, of the swinging foot on a standard leg, and how much more of it comes early
-_ROUND = 0.0225  # how gently heel and ball change places in the swing
-_RELAXED = 0.5  # how much less the swinging foot's toes are bent than they would be on the ground
 _BEHIND = 0.062  # metres that a standard leg's stance lies behind the hips
 _BOB, _LOWEST = 0.0292, 0.0132  # metres, of the hips' way up and down, and the phase at which they are lowest
 _BOB_ASIDE = 2.4  # metres, of the same in steps aside, for the square of how wide they are
@@ -38,22 +39,33 @@ _STRETCH, _STRIDE_STRETCH = 0.999, 0.9981  # how straight the longest leg of the
 class GaitShape(NamedTuple):
     """What the walking cycle needs of a body."""
 
-    legs: Floats  # (2, 11) left and right leg, metres
+    legs: Floats  # (2, 46) left and right leg, metres
     scale: float  # leg length / that of an average adult
     half_leg: float  # half the length of thigh and shin together, metres: the unit of the lowering
 
 
-def gait_shape(skeleton: Skeleton) -> GaitShape:
-    """Measure the legs of a skeleton."""
+def gait_shape(skeleton: Skeleton, soles: Soles | None = None) -> GaitShape:
+    """Measure the legs of a skeleton; feet roll as average ones, or as the `soles` do if these are told.
+
+    Without toes that bend they roll over the tips, and are pitched as much less as these are farther out.
+    """
     at = dict(zip(skeleton.names, skeleton.positions, strict=True))
     rows = []
-    for side in ("left", "right"):
+    for i, side in enumerate(("left", "right")):
         hip, knee, ankle = at[f"{side}UpperLeg"], at[f"{side}LowerLeg"], at[f"{side}Foot"]
         thigh, shin = float(np.linalg.norm(knee - hip)), float(np.linalg.norm(ankle - knee))
         leg, toes = thigh + shin, at.get(f"{side}Toes", ankle + np.array([0.0, -ankle[1], 0.18 * (thigh + shin)]))
         ball, above = max(float(toes[2] - ankle[2]), 0.01), float(min(max(toes[1], 0.0), 0.5 * ankle[1]))
-        rows.append([*hip, *ankle, ball, 0.092 * leg, thigh, shin, above])
-    legs = np.array(rows)
+        heel, rises = 0.092 * leg, 1.0
+        if soles is not None:
+            heel, rolls_at = max(heel, float(soles.heels[i])), ball
+            ball = ball if f"{side}Toes" in at else max(float(soles.tips[i]), 0.01)
+            rises = min(rolls_at / ball, 1.0)
+        rows.append([*hip, *ankle, ball, heel, thigh, shin, above, rises])
+    legs = np.zeros((2, _OWN + 2 * len(PITCHES)))
+    legs[:, :_OWN] = rows
+    if soles is not None:
+        legs[:, _OWN:] = [own_roll(leg, roll).ravel() for leg, roll in zip(legs, soles.rolls, strict=True)]
     leg = float((legs[:, _THIGH] + legs[:, _SHIN]).mean())
     return GaitShape(legs, leg / STANDARD_LEG, 0.5 * leg)
 
@@ -119,56 +131,15 @@ def home_of(legs: Floats, stride: Stride, side: int) -> tuple[float, float]:
 
 
 @inner_kernel
-def _bump(w: float) -> float:
-    """0 at both ends of a swing, with no slope, 1 in its middle."""
-    return 16.0 * (w * (1.0 - w)) ** 2
-
-
-@inner_kernel
 def roll_of(stride: Stride, u: float) -> tuple[float, float]:
     """Pitch of a foot at cycle position `u`, radians, positive toes down; and how high it is lifted, metres."""
     duty, ahead = stride.duty, stride.ahead
     lift = 0.0
     if u >= duty:
         w = (u - duty) / (1.0 - duty)
-        lift = _LIFT * stride.scale * stride.effort * _bump(w) * (1.0 + _EARLY * (1.0 - 2.0 * w))
+        lift = _LIFT * stride.scale * stride.effort * bump(w) * (1.0 + _EARLY * (1.0 - 2.0 * w))
     pitch = ahead * _pitch_ahead(u, duty) if ahead >= 0.0 else -ahead * _pitch_back(u, duty)
     return pitch, lift
-
-
-@inner_kernel
-def tilt_foot(
-    legs: Floats,
-    side: int,
-    place: tuple[float, float, float],
-    roll: tuple[float, float],
-    ease: tuple[float, float],
-    out: Floats,
-) -> None:
-    """Ankle, yaw, pitch and toe bend (6,) of a foot whose flat place is x, z, yaw, pitched and lifted as `roll` says.
-
-    It turns about its ball or its heel, as gently as `ease_of` its swing says.
-    """
-    (x, z, yaw), (pitch, lift), (gentle, relaxed) = place, roll, ease
-    height, above = legs[side, _ANKLE + 1], legs[side, _TOES]
-    sine, cosine = np.sin(pitch), np.cos(pitch)
-    size = np.sqrt(sine * sine + gentle)
-    toes_down, toes_up = 0.5 * (size + sine), 0.5 * (size - sine)  # of these the sine is made
-    pivot = legs[side, _BALL] if pitch > 0.0 else -legs[side, _HEEL]
-    along = height * sine - above * toes_down + pivot * (1.0 - cosine)
-    over_toes = above * (1.0 - cosine) if pitch > 0.0 else 0.0
-    out[0] = x + along * np.sin(yaw)
-    out[1] = height * cosine + legs[side, _BALL] * toes_down + legs[side, _HEEL] * toes_up + over_toes + lift
-    out[2] = z + along * np.cos(yaw)
-    out[3] = yaw
-    out[4] = pitch
-    out[5] = -np.arcsin(min(toes_down, 1.0)) * (1.0 - relaxed)
-
-
-@inner_kernel
-def ease_of(ahead: float, w: float) -> tuple[float, float]:
-    """How gently heel and ball change places at the part `w` of a swing, and how far the toes hang loose."""
-    return _ROUND * ahead * ahead * _bump(w), _RELAXED * _bump(w)
 
 
 @kernel
@@ -192,7 +163,7 @@ def flat_place(legs: Floats, stride: Stride, side: int, u: float) -> tuple[float
         z = _hermite(az, swing * (turn * ax - forward), bz, swing * (turn * bx - forward), w)
         yaw = _hermite(-turn * half, -turn * swing, turn * half, -turn * swing, w)
         sag = 0.5 * forward * turn * half * half  # in a turn, both ends of the step lie this far towards its inside
-        x -= min(max(sag, -0.1 * stride.scale), 0.1 * stride.scale) * _bump(w)
+        x -= min(max(sag, -0.1 * stride.scale), 0.1 * stride.scale) * bump(w)
     return x, z, yaw, w
 
 

@@ -11,6 +11,7 @@ from elbowroom.body.fitting.body_mesh import body_mesh, left_out_note, loose_nod
 from elbowroom.body.fitting.body_parts import SIDES
 from elbowroom.body.fitting.fit import Fit, fit_capsules
 from elbowroom.body.fitting.proportions import proportional_capsules
+from elbowroom.body.fitting.rolling import soles_of
 from elbowroom.body.fitting.stock_fit import stock_fit
 from elbowroom.body.fitting.surface import Surface, surface_of, vertex_points
 from elbowroom.body.humanoid import AvatarMeta, Humanoid
@@ -84,9 +85,11 @@ def _humanoid(
     body = body_mesh(triangle_mesh(bones.gltf, bones.tree), bones.tree, carriers, loose, figure.matrices)
     rig = rig_of(figure, vertex_points(body))
     skeleton = skeleton_of(figure, rig)
-    surface = surface_of(body.moved(rig.to_model), skeleton)
+    own = body.moved(rig.to_model)
+    surface = surface_of(own, skeleton)
     as_it_is = not bones.told and not settings.include_hair
-    fit = (stock_fit(gltf.glb, skeleton) if as_it_is else None) or fit_capsules(skeleton, surface)
+    stock = stock_fit(gltf.glb, skeleton) if as_it_is else None
+    fit = stock or fit_capsules(skeleton, surface)
     capsules, capsule_notes = _capsules(skeleton, fit)
     unit = () if rig.scale == 1.0 else (f"one unit of the file is taken for {rig.scale:g} m, from the figure's height",)
     told = hanim.meta if hanim else _meta(gltf, vrm)
@@ -97,7 +100,9 @@ def _humanoid(
         has_body=_NO_BODY not in capsule_notes,
     )
     read_with = replace(settings, bones=bones.told)
-    humanoid = Humanoid(Path(gltf.name).stem, skeleton, capsules, rig, source, meta, read_with, pack_glb(bones.gltf))
+    soles = None if stock else soles_of(skeleton, capsules, own if meta.has_body else None)
+    glb = pack_glb(bones.gltf)
+    humanoid = Humanoid(Path(gltf.name).stem, skeleton, capsules, rig, source, meta, read_with, glb, soles)
     return sized(humanoid, surface, settings.height, metric=figure.metric, place=gltf.name)
 
 

@@ -86,6 +86,7 @@ def _scaled(humanoid: Humanoid, surface: Surface, factor: float, note: str) -> t
             ends=factor * capsules.ends,
             radii=factor * capsules.radii,
         ),
+        soles=None if humanoid.soles is None else humanoid.soles.scaled(factor),
         rig=replace(humanoid.rig, scale=factor * humanoid.rig.scale),
         meta=replace(humanoid.meta, notes=(*humanoid.meta.notes, note)),
     )

@@ -92,7 +92,7 @@ def body_model(humanoid: Humanoid) -> BodyModel:
     skeleton, capsules = humanoid.skeleton, humanoid.capsules
     parents = np.ascontiguousarray(skeleton.parents, np.int64)
     rest = np.ascontiguousarray(skeleton.positions, np.float64)
-    gait = gait_shape(skeleton)
+    gait = gait_shape(skeleton, humanoid.soles)
     figure = posing.Figure(
         base=relaxed_rotations(skeleton),
         parents=parents,

@@ -49,7 +49,7 @@ class Poser:
 
     def __init__(self, humanoid: Humanoid) -> None:
         self.skeleton = humanoid.skeleton
-        self._gait = gait_shape(self.skeleton)
+        self._gait = gait_shape(self.skeleton, humanoid.soles)
         self._relaxed = relaxed_rotations(self.skeleton)
 
     def local(self, q: Floats, roots: Floats) -> tuple[Floats, Floats]:

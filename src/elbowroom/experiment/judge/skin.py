@@ -5,6 +5,7 @@ its place in T-pose by one joint alone, r that joint's place in T-pose, and p, R
 R (b - r) + p: in the model's axes every joint's rotation in T-pose is the identity.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -48,6 +49,12 @@ class Skin:
     weights: Floats  # (V, K) sum 1, the greatest first
     offsets: Floats  # (V, K, 3) from each joint in T-pose: b - r, metres
     left_out: int  # triangles that are not the body: what springs move, and rigid things on a skinned body
+
+    def most_on(self, joints: Sequence[int]) -> Ints:
+        """The vertices (v,) of its triangles that hang on one of these joints most."""
+        used = np.unique(self.triangles)
+        mine: Ints = used[np.isin(self.joints[used, 0], joints)]
+        return mine
 
     def vertices(self, posed: Posed, which: Ints) -> Floats:
         """The vertices `which` (v,) in the world, (N, v, 3), for N poses."""

@@ -60,5 +60,5 @@ class Soles:
 
 def _skin_over(posed: Posed, skin: Skin, joints: list[int]) -> Floats:
     """The height (N,) of the lowest vertex that follows some joints most."""
-    lowest: Floats = skin.vertices(posed, np.flatnonzero(np.isin(skin.joints[:, 0], joints)))[..., 1].min(axis=1)
+    lowest: Floats = skin.vertices(posed, skin.most_on(joints))[..., 1].min(axis=1)
     return lowest

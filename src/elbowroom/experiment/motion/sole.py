@@ -1,6 +1,6 @@
 """The soles of an avatar: a few points of each foot that touch the ground first, however the foot is turned."""
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from elbowroom.body.gait.cycle import gait_shape
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.experiment.judge.poses import Posed
-from elbowroom.experiment.judge.skin import Skin, skin_of
+from elbowroom.experiment.judge.skin import Carried, Skin, skin_of
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -17,18 +17,14 @@ _THICK = 0.025  # of a leg: what is so near the lowest point of a foot in T-pose
 _DIRECTIONS, _SPREAD = 48, 24  # in which the farthest points are taken, and points spread over the whole sole besides
 
 
-@dataclass(frozen=True, eq=False)
-class Sole:
-    """Points of one foot, each fixed to the joint that carries most of it."""
+class Sole(NamedTuple):
+    """Points of one foot, as its joints carry them."""
 
-    joints: Ints  # (P,)
-    offsets: Floats  # (P, 3) from the joint in T-pose, metres
+    carried: Carried
 
     def points(self, posed: Posed) -> Floats:
         """Where they are (N, P, 3) in N poses."""
-        turned = np.einsum("npij,pj->npi", posed.rotations[:, self.joints], self.offsets)
-        places: Floats = posed.positions[:, self.joints] + turned
-        return places
+        return self.carried.vertices(posed, np.arange(len(posed.positions)))
 
 
 def soles_of(humanoid: Humanoid) -> tuple[Sole, Sole]:
@@ -43,16 +39,15 @@ def _of_skin(humanoid: Humanoid, skin: Skin | None, side: str) -> Sole:
     own = [skeleton.index(side + part) for part in ("Foot", "Toes") if skeleton.has(side + part)]
     if skin is None:
         return _of_skeleton(humanoid, side)
-    carriers, offsets = skin.joints[:, 0], skin.offsets[:, 0]
-    mine = np.flatnonzero(np.isin(carriers, own))
+    mine = skin.most_on(own)
     if not len(mine):
         return _of_skeleton(humanoid, side)
-    places = skeleton.positions[carriers[mine]] + offsets[mine]
+    upright = Posed(skeleton.positions[None], np.broadcast_to(np.eye(3), (1, len(skeleton.names), 3, 3)))
+    places = skin.vertices(upright, mine)[0]
     leg = 2.0 * gait_shape(skeleton).half_leg
-    low = places[:, 1] < places[:, 1].min() + _THICK * leg
-    kept = np.array([places[low][:, 2].argmin(), *_outermost(places[low]), *_spread(places[low])])
-    chosen = mine[low][np.unique(kept)]
-    return Sole(carriers[chosen].astype(np.int64), offsets[chosen])
+    low = np.flatnonzero(places[:, 1] < places[:, 1].min() + _THICK * leg)
+    kept = np.concatenate([low[[places[low][:, 2].argmin()]], _outermost(places), low[_spread(places[low])]])
+    return Sole(skin.carried(mine[np.unique(kept)]))
 
 
 def _outermost(places: Floats) -> Ints:
@@ -86,4 +81,5 @@ def _of_skeleton(humanoid: Humanoid, side: str) -> Sole:
     heel = 0.16 * gait_shape(skeleton).half_leg
     offsets = np.array([[0.0, -ankle[1], -heel], [0.0, -ankle[1], toes[2] - ankle[2]], [0.0, -toes[1], 0.0]])
     offsets[2] = [0.0, -toes[1], ankle[2] + ahead - toes[2]]
-    return Sole(np.array([foot, foot, front]), offsets)
+    points = Skin(np.array([[0, 1, 2]]), np.array([[foot], [foot], [front]]), np.ones((3, 1)), offsets[:, None], 0)
+    return Sole(points.carried(np.arange(3)))

@@ -1,0 +1,95 @@
+"""A foot that is pitched on the ground: where its ankle is, about ball or heel, as its own sole rolls.
+
+An average foot turns about two places of a flat sole: the joint of its toes, which stay level, and its heel. What an
+own foot does beside that is told at a few pitches (`soles.Soles`), and added.
+"""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowroom.body.soles import PITCHES
+from elbowroom.jit import helper, inner_kernel
+
+Floats = NDArray[np.float64]
+
+_ANKLE, _BALL, _HEEL, _TOES, _RISES, _OWN = 3, 6, 7, 10, 11, 12  # columns of `GaitShape.legs`
+_ROUND = 0.0225  # how gently heel and ball change places in the swing
+_RELAXED = 0.5  # how much less the swinging foot's toes are bent than they would be on the ground
+_HOVERS = 0.008  # metres
+_FIRST, _STEP = float(PITCHES[0]), float(PITCHES[1] - PITCHES[0])  # radians
+_LAST = len(PITCHES) - 1.0 - 1e-9  # steps
+
+
+def rolled(leg: Floats, pitch: Floats) -> tuple[Floats, Floats]:
+    """How far (F,) the ankle of a pitched foot on the ground is ahead of where it is flat, and how high it is.
+
+    Of average feet with that ball and heel, as `tilt_foot` has them where no foot swings; `leg` is a row of legs.
+    """
+    sine, cosine = np.sin(pitch), np.cos(pitch)
+    down, up = np.maximum(sine, 0.0), np.maximum(-sine, 0.0)
+    pivot, over = np.where(pitch > 0.0, leg[_BALL], -leg[_HEEL]), np.where(pitch > 0.0, 1.0 - cosine, 0.0)
+    along: Floats = leg[_ANKLE + 1] * sine - leg[_TOES] * down + pivot * (1.0 - cosine)
+    height: Floats = leg[_ANKLE + 1] * cosine + leg[_BALL] * down + leg[_HEEL] * up + leg[_TOES] * over
+    return along, height
+
+
+def own_roll(leg: Floats, roll: Floats) -> Floats:
+    """How much farther ahead, and higher, ankles (17, 2) are than `rolled` has them.
+
+    A foot whose heel is short comes down on it a little above the ground: else its knee would be bent all the stride.
+    """
+    own: Floats = roll - np.stack(rolled(leg, PITCHES), axis=1)
+    own[:, 1] -= np.where(PITCHES < 0.0, np.clip(own[:, 1], -_HOVERS, 0.0), 0.0)
+    return own
+
+
+@inner_kernel
+def bump(w: float) -> float:
+    """0 at both ends of a swing, with no slope, 1 in its middle."""
+    return 16.0 * (w * (1.0 - w)) ** 2
+
+
+@helper
+def _own_way(leg: Floats, pitch: float) -> tuple[float, float]:
+    """How much farther ahead, and higher, the ankle of an own foot is at a pitch, metres."""
+    place = min(max((pitch - _FIRST) / _STEP, 0.0), _LAST)
+    k = int(place)
+    part, at = place - k, _OWN + 2 * k
+    return leg[at] + part * (leg[at + 2] - leg[at]), leg[at + 1] + part * (leg[at + 3] - leg[at + 1])
+
+
+@inner_kernel
+def tilt_foot(
+    legs: Floats,
+    side: int,
+    place: tuple[float, float, float],
+    roll: tuple[float, float],
+    ease: tuple[float, float],
+    out: Floats,
+) -> None:
+    """Ankle, yaw, pitch and toe bend (6,) of a foot whose flat place is x, z, yaw, pitched and lifted as `roll` says.
+
+    It turns about its ball or its heel, as gently as `ease_of` its swing says.
+    """
+    (x, z, yaw), (pitch, lift), (gentle, relaxed) = place, roll, ease
+    height, above = legs[side, _ANKLE + 1], legs[side, _TOES]
+    pitch *= legs[side, _RISES] if pitch > 0.0 else 1.0
+    sine, cosine = np.sin(pitch), np.cos(pitch)
+    size = np.sqrt(sine * sine + gentle)
+    toes_down, toes_up = 0.5 * (size + sine), 0.5 * (size - sine)  # of these the sine is made
+    pivot = legs[side, _BALL] if pitch > 0.0 else -legs[side, _HEEL]
+    farther, higher = _own_way(legs[side], pitch)
+    along = height * sine - above * toes_down + pivot * (1.0 - cosine) + farther
+    over_toes = above * (1.0 - cosine) if pitch > 0.0 else 0.0
+    out[0] = x + along * np.sin(yaw)
+    out[1] = height * cosine + legs[side, _BALL] * toes_down + legs[side, _HEEL] * toes_up + over_toes + higher + lift
+    out[2] = z + along * np.cos(yaw)
+    out[3] = yaw
+    out[4] = pitch
+    out[5] = -np.arcsin(min(toes_down, 1.0)) * (1.0 - relaxed)
+
+
+@inner_kernel
+def ease_of(ahead: float, w: float) -> tuple[float, float]:
+    """How gently heel and ball change places at the part `w` of a swing, and how far the toes hang loose."""
+    return _ROUND * ahead * ahead * bump(w), _RELAXED * bump(w)
