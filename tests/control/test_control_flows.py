@@ -65,10 +65,10 @@ class FakePlanner:
 
 @pytest.fixture
 def make(monkeypatch: pytest.MonkeyPatch):  # type: ignore[no-untyped-def]
-    def controller(outcomes: list[bool]) -> Controller:
+    def controller(outcomes: list[bool], scene: str = "empty") -> Controller:
         monkeypatch.setattr(module, "RootPlanner", FakeRootPlanner)
         monkeypatch.setattr(module, "make_planner", lambda *_: FakePlanner(iter(outcomes)))
-        return Controller(HUMANOID, Scene.load("empty"), ahead=Lookahead(SIZE, INTERVAL))
+        return Controller(HUMANOID, Scene.load(scene), ahead=Lookahead(SIZE, INTERVAL))
 
     return controller
 
@@ -162,3 +162,16 @@ def test_letting_go_and_turning_back_reset(make, command: Command) -> None:  # t
     assert frame.phase is Phase.RESET
     assert frame.fill == 0
     assert frame.stuck is not command.idle
+
+
+@pytest.mark.parametrize("command", [Command(), Command(forward=-1.0)])
+def test_who_finds_no_other_way_does_not_stand_in_the_way_of_what_moves(make, command: Command) -> None:  # type: ignore[no-untyped-def]
+    """What was planned among things that move is free: it is gone on with, until it ends."""
+    controller = make([True] + 100 * [False], "traffic")
+    for _ in range(10):
+        controller.step(WALK, DT)
+    before = controller.root
+    frames = [controller.step(command, DT) for _ in range(int(0.5 / DT))]
+    assert frames[0].phase is Phase.RESET
+    assert frames[0].fill > 0
+    assert controller.root.z == pytest.approx(before.z + 0.5)

@@ -389,7 +389,8 @@ class Controller:
         root = answer.root._replace(path=replace(answer.root.path, start_time=start))
         found, command = answer.uppers is not None, question.query.command
         self._plan_report = PlanReport(number, self._queue.time, command, root, answer.local)
-        self._halting = not found and (self._halting or steering.overturned(self._command, command))
+        unwanted = self._halting or steering.overturned(self._command, command)
+        self._halting = unwanted and not found and not self._check.restless  # who stands among what moves is run over
         self._command, self._next, self._resting = command, Phase.PLAY, False
         self._travel, self._undecided = answer.travel, answer.undecided
         self._blocked = not found and self._queue.empty
@@ -433,8 +434,11 @@ class Controller:
     # --- flow C ------------------------------------------------------------------------------------------------------
 
     def _reset_queue(self) -> None:
-        """Flow C: what is in the queue is not wanted any more. It is still played until there is something else."""
-        if self._errands.immediate:
+        """Flow C: what is in the queue is not wanted any more. It is still played until there is something else.
+
+        Where nothing moves, and that is there at once, it is not: one stands until a way is found.
+        """
+        if self._errands.immediate and not self._check.restless:
             self._queue.clear()
 
     def _clear(self) -> None:
