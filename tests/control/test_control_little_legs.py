@@ -84,7 +84,7 @@ def test_steps_that_are_too_high_are_in_the_way_and_a_way_says_so() -> None:
     assert height_at(high.ground, 0.0, 2.1, 0.0) == pytest.approx(0.17)
     assert height_at(ground, 0.0, 2.1, 0.0) == pytest.approx(0.0)
     assert as_stepped(high, humanoid) is as_stepped(high, humanoid), "one for all"
-    with pytest.raises(NoWayError, match="steps of 3 cm are the highest"):
+    with pytest.raises(NoWayError, match="steps of 4 cm are the highest"):
         Controller(humanoid, high).goto((0.0, 0.17 * STEPS, GOAL))
     Controller(humanoid, low).goto((0.0, 0.03 * STEPS, GOAL))
 

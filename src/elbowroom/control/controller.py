@@ -11,6 +11,7 @@ from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.root import RootState
 from elbowroom.clips.motion_set import STOCK, MotionSet
 from elbowroom.control import steering
+from elbowroom.control.feet.in_step import in_step
 from elbowroom.control.frame import Frame, Phase, PlanReport
 from elbowroom.control.journey import Journey
 from elbowroom.control.key_frame_queue import KeyFrameQueue, Playback
@@ -340,6 +341,9 @@ class Controller:
         hurry = not self._errands.immediate and changed(self._command, command)
         time, start = self._planning_start(at_once, hurry)
         root, settings = RootState.of(start.root), self.settings
+        if self._command.idle or steering.overturned(self._command, command):
+            way = steering.direction(command, root.heading)
+            root = in_step(root, self._shown.root, way, self._check.model.gait.scale)
         others = self._others_beside(start, time, command)
         query = MotionQuery(
             time, root, start.upper, start.upper_velocity, command, settings.queue_size, settings.interval, others,
