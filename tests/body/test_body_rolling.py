@@ -21,7 +21,7 @@ Floats = NDArray[np.float64]
 
 PITCH = ROOT_STATE + 3  # of the left foot; the right one's is FOOT further on
 PITCHES = np.linspace(-0.29, 1.05, 135)
-BALL, HEEL, RISES, OWN = 6, 7, 11, 12  # columns of the legs
+BALL, HEEL, RISES, STRIKES, OWN = 6, 7, 11, 12, 13  # columns of the legs
 
 
 def without_toes(humanoid: Humanoid) -> Humanoid:
@@ -133,7 +133,7 @@ def test_an_average_foot_without_a_mesh_rolls_as_it_always_did() -> None:
 
 def test_a_foot_without_toes_rolls_over_its_tip_and_is_pitched_less() -> None:
     humanoid = without_toes(proportional_humanoid())
-    box = np.array([[x, y, z] for x in (-0.05, 0.05) for y in (0.0, 0.1) for z in (-0.1, 0.3)])
+    box = np.array([[x, y, z] for x in (-0.05, 0.05) for y in (0.0, 0.05) for z in (-0.1, 0.3)])
     body = mesh_of(humanoid.skeleton, box, np.zeros(8))
     soles = soles_of(humanoid.skeleton, humanoid.capsules, body)
     assert soles.tips == pytest.approx([0.3, 0.3])
@@ -142,9 +142,10 @@ def test_a_foot_without_toes_rolls_over_its_tip_and_is_pitched_less() -> None:
     assert legs[:, BALL] == pytest.approx([0.3, 0.3])
     assert legs[:, HEEL] == pytest.approx([0.1, 0.1])
     assert legs[:, RISES] == pytest.approx(0.18 * legs[:, 8:10].sum(axis=1) / 0.3)
+    assert legs[:, STRIKES] == pytest.approx(0.092 * legs[:, 8:10].sum(axis=1) / 0.1)
     _, pitches = pitched(humanoid, soles)
     assert pitches[-1] == pytest.approx(legs[0, RISES] * PITCHES[-1])
-    assert pitches[0] == pytest.approx(PITCHES[0])
+    assert pitches[0] == pytest.approx(legs[0, STRIKES] * PITCHES[0])
 
 
 def test_soles_grow_with_the_body() -> None:

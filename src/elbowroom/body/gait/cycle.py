@@ -22,9 +22,9 @@ from elbowroom.jit import helper, inner_kernel, kernel
 Floats = NDArray[np.float64]
 
 # Columns of `GaitShape.legs`: hip and ankle in T-pose (root frame), ball before and heel behind the ankle, thigh, shin,
-# height of the toes' joint above the sole, how much its heel rises of what it would; from there on how much farther
-# ahead, and higher, its own feet have the ankle at `PITCHES`.
-_HIP, _ANKLE, _THIGH, _SHIN, _OWN = 0, 3, 8, 9, 12
+# height of the toes' joint above the sole, how much of what it would the foot is pitched, toes down and up; from there
+# on how much farther ahead, and higher, its own feet have the ankle at `PITCHES`.
+_HIP, _ANKLE, _THIGH, _SHIN, _OWN = 0, 3, 8, 9, 13
 
 _HEEL_STRIKE, _TOE_OFF = 0.292, 0.92  # radians of foot pitch
 _FLAT, _RISE = 0.16, 0.45  # of the stance: from when on the foot is flat, and its heel rises
@@ -39,7 +39,7 @@ _STRETCH, _STRIDE_STRETCH = 0.999, 0.9981  # how straight the longest leg of the
 class GaitShape(NamedTuple):
     """What the walking cycle needs of a body."""
 
-    legs: Floats  # (2, 46) left and right leg, metres
+    legs: Floats  # (2, 47) left and right leg, metres
     scale: float  # leg length / that of an average adult
     half_leg: float  # half the length of thigh and shin together, metres: the unit of the lowering
 
@@ -47,7 +47,8 @@ class GaitShape(NamedTuple):
 def gait_shape(skeleton: Skeleton, soles: Soles | None = None) -> GaitShape:
     """Measure the legs of a skeleton; feet roll as average ones, or as the `soles` do if these are told.
 
-    Without toes that bend they roll over the tips, and are pitched as much less as these are farther out.
+    Without toes that bend they roll over the tips. Over edges that are farther out than an average foot's they are
+    pitched as much less.
     """
     at = dict(zip(skeleton.names, skeleton.positions, strict=True))
     rows = []
@@ -56,12 +57,11 @@ def gait_shape(skeleton: Skeleton, soles: Soles | None = None) -> GaitShape:
         thigh, shin = float(np.linalg.norm(knee - hip)), float(np.linalg.norm(ankle - knee))
         leg, toes = thigh + shin, at.get(f"{side}Toes", ankle + np.array([0.0, -ankle[1], 0.18 * (thigh + shin)]))
         ball, above = max(float(toes[2] - ankle[2]), 0.01), float(min(max(toes[1], 0.0), 0.5 * ankle[1]))
-        heel, rises = 0.092 * leg, 1.0
-        if soles is not None:
-            heel, rolls_at = max(heel, float(soles.heels[i])), ball
-            ball = ball if f"{side}Toes" in at else max(float(soles.tips[i]), 0.01)
-            rises = min(rolls_at / ball, 1.0)
-        rows.append([*hip, *ankle, ball, heel, thigh, shin, above, rises])
+        edge, heel = ball, 0.092 * leg
+        if soles is not None and f"{side}Toes" not in at:
+            edge = max(float(soles.tips[i]), 0.01)
+        back = heel if soles is None else max(heel, float(soles.heels[i]))
+        rows.append([*hip, *ankle, edge, back, thigh, shin, above, min(ball / edge, 1.0), heel / back])
     legs = np.zeros((2, _OWN + 2 * len(PITCHES)))
     legs[:, :_OWN] = rows
     if soles is not None:

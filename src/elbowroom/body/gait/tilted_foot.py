@@ -12,7 +12,7 @@ from elbowroom.jit import helper, inner_kernel
 
 Floats = NDArray[np.float64]
 
-_ANKLE, _BALL, _HEEL, _TOES, _RISES, _OWN = 3, 6, 7, 10, 11, 12  # columns of `GaitShape.legs`
+_ANKLE, _BALL, _HEEL, _TOES, _RISES, _STRIKES, _OWN = 3, 6, 7, 10, 11, 12, 13  # columns of `GaitShape.legs`
 _ROUND = 0.0225  # how gently heel and ball change places in the swing
 _RELAXED = 0.5  # how much less the swinging foot's toes are bent than they would be on the ground
 _HOVERS = 0.008  # metres
@@ -73,7 +73,7 @@ def tilt_foot(
     """
     (x, z, yaw), (pitch, lift), (gentle, relaxed) = place, roll, ease
     height, above = legs[side, _ANKLE + 1], legs[side, _TOES]
-    pitch *= legs[side, _RISES] if pitch > 0.0 else 1.0
+    pitch *= legs[side, _RISES] if pitch > 0.0 else legs[side, _STRIKES]
     sine, cosine = np.sin(pitch), np.cos(pitch)
     size = np.sqrt(sine * sine + gentle)
     toes_down, toes_up = 0.5 * (size + sine), 0.5 * (size - sine)  # of these the sine is made
