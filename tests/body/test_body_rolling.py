@@ -21,7 +21,7 @@ Floats = NDArray[np.float64]
 
 PITCH = ROOT_STATE + 3  # of the left foot; the right one's is FOOT further on
 PITCHES = np.linspace(-0.29, 1.05, 135)
-BALL, HEEL, RISES, STRIKES, OWN = 6, 7, 11, 12, 13  # columns of the legs
+BALL, HEEL, RISES, STRIKES, HANGS, OWN = 6, 7, 11, 12, 13, 14  # columns of the legs
 
 
 def without_toes(humanoid: Humanoid) -> Humanoid:
@@ -146,6 +146,17 @@ def test_a_foot_without_toes_rolls_over_its_tip_and_is_pitched_less() -> None:
     _, pitches = pitched(humanoid, soles)
     assert pitches[-1] == pytest.approx(legs[0, RISES] * PITCHES[-1])
     assert pitches[0] == pytest.approx(legs[0, STRIKES] * PITCHES[0])
+
+
+def test_long_toes_hang_less() -> None:
+    humanoid = proportional_humanoid()
+    soles = soles_of(humanoid.skeleton, humanoid.capsules, None)
+    long = soles._replace(tips=soles.tips + 0.15)
+    own, longer = (gait_shape(humanoid.skeleton, each).legs for each in (soles, long))
+    assert gait_shape(humanoid.skeleton).legs[:, HANGS] == pytest.approx([1.0, 1.0])
+    assert own[:, HANGS].min() > 0.9
+    assert longer[:, HANGS] == pytest.approx(0.09 * own[:, 8:10].sum(axis=1) / (long.tips - own[:, BALL]))
+    assert longer[:, HANGS].max() < 0.4
 
 
 def test_soles_grow_with_the_body() -> None:

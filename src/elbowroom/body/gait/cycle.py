@@ -22,9 +22,10 @@ from elbowroom.jit import helper, inner_kernel, kernel
 Floats = NDArray[np.float64]
 
 # Columns of `GaitShape.legs`: hip and ankle in T-pose (root frame), ball before and heel behind the ankle, thigh, shin,
-# height of the toes' joint above the sole, how much of what it would the foot is pitched, toes down and up; from there
-# on how much farther ahead, and higher, its own feet have the ankle at `PITCHES`.
-_HIP, _ANKLE, _THIGH, _SHIN, _OWN = 0, 3, 8, 9, 13
+# height of the toes' joint above the sole, how much of what it would the foot is pitched, toes down and up, and how
+# much of that its toes hang loose; from there on how much farther ahead, and higher, its own feet have the ankle at
+# `PITCHES`.
+_HIP, _ANKLE, _THIGH, _SHIN, _OWN = 0, 3, 8, 9, 14
 
 _HEEL_STRIKE, _TOE_OFF = 0.292, 0.92  # radians of foot pitch
 _FLAT, _RISE = 0.16, 0.45  # of the stance: from when on the foot is flat, and its heel rises
@@ -35,11 +36,13 @@ _BOB, _LOWEST = 0.0292, 0.0132  # metres, of the hips' way up and down, and the 
 _BOB_ASIDE = 2.4  # metres, of the same in steps aside, for the square of how wide they are
 _STRETCH, _STRIDE_STRETCH = 0.999, 0.9981  # how straight the longest leg of the cycle gets, standing and walking
 
+_HEEL, _TOE = 0.092, 0.09  # of an average leg's length, behind the ankle and before the joint of the toes
+
 
 class GaitShape(NamedTuple):
     """What the walking cycle needs of a body."""
 
-    legs: Floats  # (2, 47) left and right leg, metres
+    legs: Floats  # (2, 48) left and right leg, metres
     scale: float  # leg length / that of an average adult
     half_leg: float  # half the length of thigh and shin together, metres: the unit of the lowering
 
@@ -48,26 +51,31 @@ def gait_shape(skeleton: Skeleton, soles: Soles | None = None) -> GaitShape:
     """Measure the legs of a skeleton; feet roll as average ones, or as the `soles` do if these are told.
 
     Without toes that bend they roll over the tips. Over edges that are farther out than an average foot's they are
-    pitched as much less.
+    pitched as much less, and longer toes hang less, so that no tip drags.
     """
-    at = dict(zip(skeleton.names, skeleton.positions, strict=True))
-    rows = []
-    for i, side in enumerate(("left", "right")):
-        hip, knee, ankle = at[f"{side}UpperLeg"], at[f"{side}LowerLeg"], at[f"{side}Foot"]
-        thigh, shin = float(np.linalg.norm(knee - hip)), float(np.linalg.norm(ankle - knee))
-        leg, toes = thigh + shin, at.get(f"{side}Toes", ankle + np.array([0.0, -ankle[1], 0.18 * (thigh + shin)]))
-        ball, above = max(float(toes[2] - ankle[2]), 0.01), float(min(max(toes[1], 0.0), 0.5 * ankle[1]))
-        edge, heel = ball, 0.092 * leg
-        if soles is not None and f"{side}Toes" not in at:
-            edge = max(float(soles.tips[i]), 0.01)
-        back = heel if soles is None else max(heel, float(soles.heels[i]))
-        rows.append([*hip, *ankle, edge, back, thigh, shin, above, min(ball / edge, 1.0), heel / back])
     legs = np.zeros((2, _OWN + 2 * len(PITCHES)))
-    legs[:, :_OWN] = rows
-    if soles is not None:
-        legs[:, _OWN:] = [own_roll(leg, roll).ravel() for leg, roll in zip(legs, soles.rolls, strict=True)]
+    for i, side in enumerate(("left", "right")):
+        reach = None if soles is None else (float(soles.heels[i]), float(soles.tips[i]))
+        legs[i, :_OWN] = _measured(skeleton, side, reach)
+        if soles is not None:
+            legs[i, _OWN:] = own_roll(legs[i], soles.rolls[i]).ravel()
     leg = float((legs[:, _THIGH] + legs[:, _SHIN]).mean())
     return GaitShape(legs, leg / STANDARD_LEG, 0.5 * leg)
+
+
+def _measured(skeleton: Skeleton, side: str, reach: tuple[float, float] | None) -> list[float]:
+    """The columns of one leg, whose sole may `reach` so far behind the ankle, and before it."""
+    at = dict(zip(skeleton.names, skeleton.positions, strict=True))
+    hip, knee, ankle = at[f"{side}UpperLeg"], at[f"{side}LowerLeg"], at[f"{side}Foot"]
+    thigh, shin = float(np.linalg.norm(knee - hip)), float(np.linalg.norm(ankle - knee))
+    leg, bends = thigh + shin, f"{side}Toes" in at
+    toes = at[f"{side}Toes"] if bends else ankle + np.array([0.0, -ankle[1], 0.18 * leg])
+    ball, above = max(float(toes[2] - ankle[2]), 0.01), float(min(max(toes[1], 0.0), 0.5 * ankle[1]))
+    heel, tip = reach or (0.0, ball)
+    edge = max(tip, 0.01) if reach and not bends else ball
+    back, toe = max(heel, _HEEL * leg), max(tip - ball, _TOE * leg)
+    less = [min(ball / edge, 1.0), _HEEL * leg / back, _TOE * leg / toe]
+    return [*hip.tolist(), *ankle.tolist(), edge, back, thigh, shin, above, *less]
 
 
 @inner_kernel

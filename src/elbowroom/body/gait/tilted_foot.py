@@ -12,7 +12,7 @@ from elbowroom.jit import helper, inner_kernel
 
 Floats = NDArray[np.float64]
 
-_ANKLE, _BALL, _HEEL, _TOES, _RISES, _STRIKES, _OWN = 3, 6, 7, 10, 11, 12, 13  # columns of `GaitShape.legs`
+_ANKLE, _BALL, _HEEL, _TOES, _RISES, _STRIKES, _HANGS, _OWN = 3, 6, 7, 10, 11, 12, 13, 14  # columns of `GaitShape.legs`
 _ROUND = 0.0225  # how gently heel and ball change places in the swing
 _RELAXED = 0.5  # how much less the swinging foot's toes are bent than they would be on the ground
 _HOVERS = 0.008  # metres
@@ -86,7 +86,7 @@ def tilt_foot(
     out[2] = z + along * np.cos(yaw)
     out[3] = yaw
     out[4] = pitch
-    out[5] = -np.arcsin(min(toes_down, 1.0)) * (1.0 - relaxed)
+    out[5] = -np.arcsin(min(toes_down, 1.0)) * (1.0 - relaxed * legs[side, _HANGS])
 
 
 @inner_kernel
