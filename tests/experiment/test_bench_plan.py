@@ -1,5 +1,6 @@
 """The planning benchmark makes the calls that a walk makes, and says what they cost."""
 
+import os
 import xml.etree.ElementTree as ET
 from pathlib import Path
 
@@ -70,3 +71,15 @@ def test_a_folder_that_cannot_be_is_told_before_anything_is_measured(
     result = CliRunner().invoke(app, command, standalone_mode=False)
     assert result.return_value == 2
     assert "file is no folder" in result.output
+
+
+@pytest.mark.parametrize("command", ["plan", "motion"])
+def test_a_folder_that_is_not_ours_is_told_at_once(
+    command: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(os, "access", lambda path, mode: False)  # whoever runs the tests may be allowed everything
+    options = ["bench", command, "--plots", str(tmp_path / "pictures")]
+    result = CliRunner().invoke(app, options, standalone_mode=False)
+    assert result.return_value == 2
+    assert "is not yours to write in" in result.output
+    assert not (tmp_path / "pictures").exists()

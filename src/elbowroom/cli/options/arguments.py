@@ -1,5 +1,6 @@
 """What can be said of a call's arguments before anything heavy is imported."""
 
+import os
 from collections.abc import Collection, Iterable
 from pathlib import Path
 
@@ -57,9 +58,11 @@ def check_file(file: Path) -> None:
 
 
 def check_folder(folder: Path | None) -> None:
-    """Raises `InputError` for a folder to come that a file is in the way of."""
+    """Raises `InputError` for a folder to come that a file is in the way of, or where nothing may be written."""
     for there in () if folder is None else (folder, *folder.parents):
         if there.exists():
             if not there.is_dir():
                 raise InputError(f"{folder}: cannot be written in ({there} is no folder)")
+            if not os.access(there, os.W_OK):
+                raise InputError(f"{folder}: cannot be written in ({there} is not yours to write in)")
             return
