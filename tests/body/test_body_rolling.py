@@ -148,6 +148,19 @@ def test_a_foot_without_toes_rolls_over_its_tip_and_is_pitched_less() -> None:
     assert pitches[0] == pytest.approx(legs[0, STRIKES] * PITCHES[0])
 
 
+def test_skis_are_no_feet() -> None:
+    humanoid = proportional_humanoid()
+    points, on_toes = random_foot(1, 0.129)
+    body = mesh_of(humanoid.skeleton, points, on_toes)
+    skis = mesh_of(
+        humanoid.skeleton, np.concatenate([points, [[0.0, 0.0, 40.0], [0.0, 0.0, -1.1]]]), np.r_[on_toes, 0, 0]
+    )
+    for found, alone in zip(
+        *(soles_of(humanoid.skeleton, humanoid.capsules, each) for each in (skis, body)), strict=True
+    ):
+        assert found == pytest.approx(alone)
+
+
 def test_long_toes_hang_less() -> None:
     humanoid = proportional_humanoid()
     soles = soles_of(humanoid.skeleton, humanoid.capsules, None)

@@ -23,6 +23,7 @@ Floats = NDArray[np.float64]
 _STRIKE, _TOE_OFF = 0.3, 1.0  # radians that a foot is pitched in a stride, toes up and toes down
 _ON_GROUND = 0.004  # metres: what is no higher than that over the lowest point carries the foot too
 _FINER = 5  # steps from each of `PITCHES` to the next
+_FARTHEST = 1.2  # of the leg: what is farther before or behind the ankle is no foot
 _NO_HEEL = 0.08  # of the leg, behind the ankle, where no mesh shows it
 
 
@@ -77,12 +78,13 @@ def _toes(skeleton: Skeleton, side: str) -> int | None:
 
 
 def _of_mesh(skeleton: Skeleton, body: BodyMesh, side: str) -> _Foot | None:
-    """Its vertices below the ankle; None without any."""
+    """Its vertices below the ankle, but not those of skis; None without any."""
     foot, toes = skeleton.index(f"{side}Foot"), _toes(skeleton, side)
     ankle, joint = skeleton.positions[foot], skeleton.positions[foot if toes is None else toes]
     used = used_vertices(body)
     mine = used[np.isin(body.joints[used, 0], [foot] if toes is None else [foot, toes])]
-    mine = mine[body.places[mine, 0, 1] <= max(ankle[1], joint[1])]
+    low, out = body.places[mine, 0, 1], np.abs(body.places[mine, 0, 2] - ankle[2])
+    mine = mine[(low <= max(ankle[1], joint[1])) & (out <= _FARTHEST * _leg(skeleton, side))]
     if not len(mine):
         return None
     bent = body.joints[mine] == toes if toes is not None else np.zeros(body.joints[mine].shape, np.bool_)
@@ -100,16 +102,17 @@ def _of_capsule(skeleton: Skeleton, capsules: Capsules, side: str) -> _Foot:
     """Heel, ball and tip of the toes, by the bones and the foot's capsule."""
     foot, toes, at = skeleton.index(f"{side}Foot"), _toes(skeleton, side), capsules.names.index(f"{side}Foot")
     ankle, joint = skeleton.positions[foot], skeleton.positions[foot if toes is None else toes]
-    leg = float(np.linalg.norm(np.diff(skeleton.positions[_leg(skeleton, side)], axis=0), axis=1).sum())
     tip = max(float(capsules.starts[at, 2]), float(capsules.ends[at, 2])) + float(capsules.radii[at])
     ball, bends = float(joint[2] - ankle[2]), np.array([0.0, 0.0, 0.0 if toes is None else 1.0])
-    by_foot = np.array([[-ankle[1], -_NO_HEEL * leg], [-ankle[1], ball], [-ankle[1], tip]])
+    by_foot = np.array([[-ankle[1], -_NO_HEEL * _leg(skeleton, side)], [-ankle[1], ball], [-ankle[1], tip]])
     by_toes = np.array([[0.0, 0.0], [0.0, 0.0], [-joint[1], tip - ball]])
     return _Foot(by_foot * (1.0 - bends)[:, None], by_toes * bends[:, None], bends, (joint - ankle)[1:])
 
 
-def _leg(skeleton: Skeleton, side: str) -> list[int]:
-    return [skeleton.index(side + bone) for bone in ("UpperLeg", "LowerLeg", "Foot")]
+def _leg(skeleton: Skeleton, side: str) -> float:
+    """How long thigh and shin are, metres."""
+    joints = skeleton.positions[[skeleton.index(side + bone) for bone in ("UpperLeg", "LowerLeg", "Foot")]]
+    return float(np.linalg.norm(np.diff(joints, axis=0), axis=1).sum())
 
 
 def _rolled(foot: _Foot) -> Floats:
