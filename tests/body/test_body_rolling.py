@@ -21,7 +21,7 @@ Floats = NDArray[np.float64]
 
 PITCH = ROOT_STATE + 3  # of the left foot; the right one's is FOOT further on
 PITCHES = np.linspace(-0.29, 1.05, 135)
-BALL, HEEL, RISES, STRIKES, HANGS, OWN = 6, 7, 11, 12, 13, 14  # columns of the legs
+BALL, HEEL, PITCH_DOWN, PITCH_UP, HANG, OWN = 6, 7, 11, 12, 13, 14  # columns of the legs
 
 
 def without_toes(humanoid: Humanoid) -> Humanoid:
@@ -126,7 +126,7 @@ def test_an_average_foot_without_a_mesh_rolls_as_it_always_did() -> None:
     humanoid = proportional_humanoid()
     soles = soles_of(humanoid.skeleton, humanoid.capsules, None)
     own, average = gait_shape(humanoid.skeleton, soles).legs, gait_shape(humanoid.skeleton).legs
-    assert own[:, [BALL, RISES]] == pytest.approx(average[:, [BALL, RISES]])
+    assert own[:, [BALL, PITCH_DOWN]] == pytest.approx(average[:, [BALL, PITCH_DOWN]])
     assert np.abs(own[:, OWN:]).max() < 1.5e-3  # its heel is a little shorter
     assert not average[:, OWN:].any()
 
@@ -141,11 +141,11 @@ def test_a_foot_without_toes_rolls_over_its_tip_and_is_pitched_less() -> None:
     legs = gait_shape(humanoid.skeleton, soles).legs
     assert legs[:, BALL] == pytest.approx([0.3, 0.3])
     assert legs[:, HEEL] == pytest.approx([0.1, 0.1])
-    assert legs[:, RISES] == pytest.approx(0.18 * legs[:, 8:10].sum(axis=1) / 0.3)
-    assert legs[:, STRIKES] == pytest.approx(0.092 * legs[:, 8:10].sum(axis=1) / 0.1)
+    assert legs[:, PITCH_DOWN] == pytest.approx(0.18 * legs[:, 8:10].sum(axis=1) / 0.3)
+    assert legs[:, PITCH_UP] == pytest.approx(0.092 * legs[:, 8:10].sum(axis=1) / 0.1)
     _, pitches = pitched(humanoid, soles)
-    assert pitches[-1] == pytest.approx(legs[0, RISES] * PITCHES[-1])
-    assert pitches[0] == pytest.approx(legs[0, STRIKES] * PITCHES[0])
+    assert pitches[-1] == pytest.approx(legs[0, PITCH_DOWN] * PITCHES[-1])
+    assert pitches[0] == pytest.approx(legs[0, PITCH_UP] * PITCHES[0])
 
 
 def test_skis_are_no_feet() -> None:
@@ -166,10 +166,10 @@ def test_long_toes_hang_less() -> None:
     soles = soles_of(humanoid.skeleton, humanoid.capsules, None)
     long = soles._replace(tips=soles.tips + 0.15)
     own, longer = (gait_shape(humanoid.skeleton, each).legs for each in (soles, long))
-    assert gait_shape(humanoid.skeleton).legs[:, HANGS] == pytest.approx([1.0, 1.0])
-    assert own[:, HANGS].min() > 0.9
-    assert longer[:, HANGS] == pytest.approx(0.09 * own[:, 8:10].sum(axis=1) / (long.tips - own[:, BALL]))
-    assert longer[:, HANGS].max() < 0.4
+    assert gait_shape(humanoid.skeleton).legs[:, HANG] == pytest.approx([1.0, 1.0])
+    assert own[:, HANG].min() > 0.9
+    assert longer[:, HANG] == pytest.approx(0.09 * own[:, 8:10].sum(axis=1) / (long.tips - own[:, BALL]))
+    assert longer[:, HANG].max() < 0.4
 
 
 def test_soles_grow_with_the_body() -> None:

@@ -24,7 +24,7 @@ from elbowroom.jit import helper, kernel
 Floats = NDArray[np.float64]
 Hip = tuple[float, float, float]  # where a leg's joint at the hip is, metres
 
-_HIP, _ANKLE, _BALL, _THIGH, _SHIN, _TOES, _RISES = 0, 3, 6, 8, 9, 10, 11  # columns of `GaitShape.legs`
+_HIP, _ANKLE, _BALL, _THIGH, _SHIN, _TOES, _PITCH_DOWN = 0, 3, 6, 8, 9, 10, 11  # columns of `GaitShape.legs`
 _STRETCH = 0.9992  # of a leg: no foot is farther from its hip
 _SOFTLY, _HARDLY = 0.012, 0.003  # of a leg, about that, in which hips come down; the same for a foot whose heel rises
 _UNEVEN = 0.02  # metres that ground rises or falls under the feet, from which on legs are bent as in the cycle there
@@ -73,8 +73,8 @@ def _raise_heel(legs: Floats, side: int, flat: Floats, hip: Hip, foot: Floats) -
     for _ in range(2):
         far, sine, cosine = _distance(foot, hip), np.sin(foot[4]), np.cos(foot[4])
         up, ahead = ball * cosine - height * sine, height * cosine + ball * sine
-        by_radian = _behind(foot, hip) * ahead + (hip[1] - foot[1]) / far * up
-        pitch += min((far - wanted) / (legs[side, _RISES] * max(by_radian, 0.5 * ball)), max(_STEEPEST - pitch, 0.0))
+        by_radian = max(_behind(foot, hip) * ahead + (hip[1] - foot[1]) / far * up, 0.5 * ball)
+        pitch += min((far - wanted) / (legs[side, _PITCH_DOWN] * by_radian), max(_STEEPEST - pitch, 0.0))
         tilt_foot(legs, side, (flat[X], flat[Z], flat[YAW]), (pitch, flat[LIFT]), ease_of(1.0, flat[SWING]), foot)
 
 

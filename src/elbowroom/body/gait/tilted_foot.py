@@ -12,10 +12,11 @@ from elbowroom.jit import helper, inner_kernel
 
 Floats = NDArray[np.float64]
 
-_ANKLE, _BALL, _HEEL, _TOES, _RISES, _STRIKES, _HANGS, _OWN = 3, 6, 7, 10, 11, 12, 13, 14  # columns of `GaitShape.legs`
+# Columns of `GaitShape.legs`, see `cycle`.
+_ANKLE, _BALL, _HEEL, _TOES, _PITCH_DOWN, _PITCH_UP, _HANG, _OWN = 3, 6, 7, 10, 11, 12, 13, 14
 _ROUND = 0.0225  # how gently heel and ball change places in the swing
 _RELAXED = 0.5  # how much less the swinging foot's toes are bent than they would be on the ground
-_HOVERS = 0.008  # metres
+_HOVERS = 0.008  # metres that a heel may be above the ground as it strikes
 _FIRST, _STEP = float(PITCHES[0]), float(PITCHES[1] - PITCHES[0])  # radians
 _LAST = len(PITCHES) - 1.0 - 1e-9  # steps
 
@@ -73,7 +74,7 @@ def tilt_foot(
     """
     (x, z, yaw), (pitch, lift), (gentle, relaxed) = place, roll, ease
     height, above = legs[side, _ANKLE + 1], legs[side, _TOES]
-    pitch *= legs[side, _RISES] if pitch > 0.0 else legs[side, _STRIKES]
+    pitch *= legs[side, _PITCH_DOWN] if pitch > 0.0 else legs[side, _PITCH_UP]
     sine, cosine = np.sin(pitch), np.cos(pitch)
     size = np.sqrt(sine * sine + gentle)
     toes_down, toes_up = 0.5 * (size + sine), 0.5 * (size - sine)  # of these the sine is made
@@ -86,7 +87,7 @@ def tilt_foot(
     out[2] = z + along * np.cos(yaw)
     out[3] = yaw
     out[4] = pitch
-    out[5] = -np.arcsin(min(toes_down, 1.0)) * (1.0 - relaxed * legs[side, _HANGS])
+    out[5] = -np.arcsin(min(toes_down, 1.0)) * (1.0 - relaxed * legs[side, _HANG])
 
 
 @inner_kernel

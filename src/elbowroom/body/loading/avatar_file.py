@@ -100,6 +100,7 @@ def _humanoid(
         has_body=_NO_BODY not in capsule_notes,
     )
     read_with = replace(settings, bones=bones.told)
+    # The feet of the stock avatar are taken for average ones: courses and recordings hang on how it walks.
     soles = None if stock else soles_of(skeleton, capsules, own if meta.has_body else None)
     glb = pack_glb(bones.gltf)
     humanoid = Humanoid(Path(gltf.name).stem, skeleton, capsules, rig, source, meta, read_with, glb, soles)

@@ -17,6 +17,7 @@ Floats = NDArray[np.float64]
 _SLOW = 0.06  # m/s of a standard leg: hips and arms do not show their phase yet
 _EVEN = 0.002  # metres, of ground on which legs at rest are the same at every phase
 _APART = 0.08  # metres of a standard leg, along the way, from which on one foot is behind the other
+_WANTED = 0.5  # of a way, whose length is 1, or 0 where one wants to go nowhere
 _SWINGS, _WAITS = 0.62, 0.5  # of its cycle: from where on a foot swings, and where one is that does so first
 
 
@@ -26,7 +27,7 @@ def in_step(root: RootState, shown: Floats, way: Floats, scale: float) -> RootSt
     It is the same for who walks, or wants to go nowhere, or has his feet beside each other, or on uneven ground.
     """
     walks = math.hypot(root.forward, root.lateral) > _SLOW * math.sqrt(scale)
-    if walks or not way.any() or max(abs(root.left_rise), abs(root.right_rise)) > _EVEN:
+    if walks or math.hypot(*way) < _WANTED or max(abs(root.left_rise), abs(root.right_rise)) > _EVEN:
         return root
     feet = shown[ROOT_STATE : ROOT_STATE + 2 * FOOT].reshape(2, FOOT)
     swings = int(feet[:, SWING].argmax())
