@@ -65,9 +65,9 @@ def export(
     from elbowroom.export.writers import WRITERS
 
     recorded = Recording(recording)
+    humanoid = recorded.header.avatar.load(avatar)
     compile_first(quiet=quiet)
     with progress_bar(said("Writing {0}", out.name), None, quiet):
-        humanoid = recorded.header.avatar.load(avatar)
         animation = Animation.of(recorded, humanoid, fps)
         written = WRITERS[chosen.ending](animation, humanoid, layout)
         if place:
@@ -82,9 +82,10 @@ def _export_page(recording: Path, out: Path, avatar: Path | None, *, json: bool,
     from elbowroom.server.standalone.page import page_of_recording
 
     recorded = Recording(recording)
+    humanoid = recorded.header.avatar.load(avatar)
     compile_first(quiet=quiet)
     with progress_bar(said("Writing {0}", out.name), None, quiet):
-        page, notes = page_of_recording(recorded, recorded.header.avatar.load(avatar), recording.name)
+        page, notes = page_of_recording(recorded, humanoid, recording.name)
         _keep(out, data := page.encode())
     notes = (*notes, *([f"not whole: {recorded.note}"] if recorded.note else []))
     if json:

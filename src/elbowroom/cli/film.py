@@ -47,15 +47,15 @@ def film(
     from elbowroom.film.page import filmed_page, served
 
     recorded = Recording(recording)
-    compile_first(quiet=quiet)
-    with (
-        progress_bar(said("Filming"), 1.0, quiet) as bar,
-        closing(library_of(recorded, avatar)) as library,
-        served(library) as url,
-        filmed_page(url, look) as page,
-    ):
-        seconds = page.duration
-        count = write_film(page, output, rate, speed, lambda done, all_: bar.move(done / all_, f"{done} of {all_}"))
+    with closing(library_of(recorded, avatar)) as library:
+        compile_first(quiet=quiet)
+        with (
+            progress_bar(said("Filming"), 1.0, quiet) as bar,
+            served(library) as url,
+            filmed_page(url, look) as page,
+        ):
+            seconds = page.duration
+            count = write_film(page, output, rate, speed, lambda done, all_: bar.move(done / all_, f"{done} of {all_}"))
     if json:
         print_json({"film": str(output), "pictures": count, "fps": rate, "seconds": seconds, "size": list(look.size)})
     else:

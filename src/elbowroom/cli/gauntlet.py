@@ -10,7 +10,7 @@ import typer
 from elbowroom.cli.gauntlet_place import Pieces, PlaceFile, chosen_place
 from elbowroom.cli.options.arguments import check_arguments, check_folder
 from elbowroom.cli.options.avatar import Avatar, Bones, Height, IncludeHair, chosen_avatar, settings_by
-from elbowroom.cli.options.place import Drop, GroundHeight, Passable, Scale, UpAxis, place_options
+from elbowroom.cli.options.place import Drop, GroundHeight, Passable, Scale, UpAxis, open_scene, place_options
 from elbowroom.cli.options.workers import Cluster, Jobs, check_workers, chosen_workers
 from elbowroom.cli.telling.first_run import compile_first
 from elbowroom.cli.telling.output import PLANNER_HELP, QUEUE_HELP, json_text, print_json, print_row, progress_bar
@@ -89,8 +89,10 @@ def gauntlet(
     walker.check()
     _check_chosen(save, show)
     gauntlet = _gauntlet(furnished, level, courses, seed, TrialSettings(planner, queue), judge=judge, shapes=shapes)
-    compile_first(quiet=quiet)
     gauntlet = replace(gauntlet, avatar=walker.reference())
+    if furnished is not None:
+        open_scene(str(furnished.path), furnished.options, quiet)  # which tells of a damaged one
+    compile_first(quiet=quiet)
     if save is not None:
         return _save(_course(gauntlet, walker, save[0], quiet), save[1])
     if show is not None:

@@ -49,9 +49,9 @@ def replay(
         library = partial(library_of, recorded, avatar)
         serve_until_interrupted(library, "127.0.0.1", port, open_page=open_page, query="replay")
         return
+    humanoid = recorded.header.avatar.load(avatar)
     compile_first(quiet=quiet)
     with progress_bar(said("Replaying"), None, quiet) as bar:
-        humanoid = recorded.header.avatar.load(avatar)
         result = run_again(recorded, humanoid, lambda done: bar.move(done, f"{done} frames"))
     _report(recorded, result, json)
     raise typer.Exit(0 if result.identical and recorded.note is None else DIFFERENT)

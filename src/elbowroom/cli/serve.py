@@ -103,7 +103,11 @@ def _read(avatar: Path | None) -> tuple[str, bytes] | None:
     """The avatar's file, which travels to all nodes; raises `InputError`."""
     if avatar is None:
         return None
+    from elbowroom.body.humanoid import Humanoid
+
     try:
-        return avatar.name, avatar.read_bytes()
+        data = avatar.read_bytes()
     except OSError as error:
         raise InputError(f"--avatar {avatar}: {error.strerror}") from None
+    Humanoid.load(avatar)  # which tells of a damaged one
+    return avatar.name, data

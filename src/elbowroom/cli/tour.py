@@ -68,11 +68,12 @@ def tour(
     settings = CrossingSettings(planner, queue, seed)
     from elbowroom.experiment.crossing import controller_for, warm_up
 
-    compile_first(quiet=quiet)
     motions = clip_options.motions_by(swing, dodge, clip_options.told_by(None, None, None), style)
     place = open_scene(scene, told, quiet)
     with progress_bar(said("Opening the avatar"), None, quiet):
         humanoid = chosen_avatar(avatar, reading)
+    compile_first(quiet=quiet)
+    with progress_bar(said("Opening the avatar"), None, quiet):
         controller = controller_for(humanoid, place, settings, motions)
         warm_up(controller)
     shown, result = _walked(controller, targets, record, quiet)

@@ -45,11 +45,10 @@ def verify(
     from elbowroom.experiment.judge.verdict import Judging
 
     recorded = Recording(recording)
+    motion, scene = ShownMotion.of(recorded), recorded.scene()
+    humanoid = recorded.header.avatar.load(avatar)
     compile_first(quiet=quiet)
-    motion = ShownMotion.of(recorded)
-    scene = recorded.scene()
     with time_left_bar(said("Judging"), quiet) as move:
-        humanoid = recorded.header.avatar.load(avatar)
         judging = Judging(motion, humanoid, scene, settings)
         for _ in judging.parts():
             move(judging.judged, judging.poses)

@@ -85,11 +85,12 @@ def walk(
     from elbowroom.control.recordings.recording import Recorder
     from elbowroom.experiment.crossing import controller_for, warm_up
 
-    compile_first(quiet=quiet)
     motions = clip_options.motions_by(swing, dodge, of_clips, style)
     place = open_scene(scene, told, quiet)
     with progress_bar(said("Opening the avatar"), None, quiet):
         humanoid = chosen_avatar(avatar, reading)
+    compile_first(quiet=quiet)
+    with progress_bar(said("Opening the avatar"), None, quiet):
         controller = controller_for(humanoid, place, settings, motions)
         warm_up(controller)
     with (

@@ -32,7 +32,9 @@ def plan(
     check_folder(plots)
     from elbowroom.experiment.bench.plan import amount, run
     from elbowroom.experiment.machine import machine_kind
+    from elbowroom.world.scene import Scene
 
+    Scene.load(settings.scene)  # which tells of a damaged one
     compile_first(quiet=quiet)
     if plots is not None:
         _make_folder(plots)

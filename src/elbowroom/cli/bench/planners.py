@@ -44,9 +44,12 @@ def planners(
     check_arguments(scenes=scene or ())
     from elbowroom.experiment.bench.general import check_installed
     from elbowroom.experiment.bench.planners import amount, as_dict, run
+    from elbowroom.experiment.gauntlet.scenes import load_scene
     from elbowroom.experiment.machine import machine_kind
 
     check_installed()
+    for name in chosen.scenes:
+        load_scene(name)  # which tells of a damaged one
     compile_first(quiet=quiet)
     with chosen_workers(cluster, jobs) as workers, progress_bar("Crossing", amount(chosen), quiet) as bar:
         report = run(chosen, bar.move, workers)
