@@ -6,7 +6,7 @@ from numpy.typing import NDArray
 from elbowroom.jit import exact_kernel, helper
 from elbowroom.planning.narrow.figure import Figure
 from elbowroom.planning.narrow.places import NarrowPlaces, free_on
-from elbowroom.world.obstacles.free_map import LEVELS, Window
+from elbowroom.world.obstacles.free_map import CELL, LEVELS, Window
 
 Floats = NDArray[np.float64]
 
@@ -19,7 +19,7 @@ _MET = 0.10  # metres: what is nearer than this to the middle of a way on some l
 
 def low_places(narrow: NarrowPlaces, ways: Floats, height: float) -> Floats:
     """The low ones (K, 3) of ways (N, 4), as in `NarrowPlaces.on`: places x, z and how high they are, metres."""
-    return _low_ones(narrow.window(ways, height), narrow.figure, ways)
+    return _low_ones(narrow.around(ways, height, _BESIDE + CELL), narrow.figure, ways)
 
 
 @exact_kernel

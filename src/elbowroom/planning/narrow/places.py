@@ -5,7 +5,7 @@ from numpy.typing import NDArray
 
 from elbowroom.jit import exact_kernel, inner_exact_kernel
 from elbowroom.planning.narrow.figure import Figure
-from elbowroom.world.obstacles.free_map import CELL, FreeMap, Window
+from elbowroom.world.obstacles.free_map import CELL, EVERY_LEVEL, FreeMap, Levels, Window
 
 Floats = NDArray[np.float64]
 Pair = tuple[float, float]  # x and z
@@ -34,9 +34,13 @@ class NarrowPlaces:
         return _narrow_ones(self.window(ways, height), self.figure, self.half, ways)
 
     def window(self, ways: Floats, height: float) -> Window:
-        """The part of the map that ways (N, 4) need."""
-        low, high = ways[:, :2].min(axis=0) - 2.0 * self.half, ways[:, :2].max(axis=0) + 2.0 * self.half
-        return self._map.window(low, high, (float(ways[0, 0]), height, float(ways[0, 1])))
+        """The part of the map beside ways (N, 4), as far as a gap is broad, between elbows and shoulders."""
+        return self.around(ways, height, 2.0 * self.half, (self.figure.low, self.figure.high))
+
+    def around(self, ways: Floats, height: float, aside: float, levels: Levels = EVERY_LEVEL) -> Window:
+        """The part of the map that is no farther than so many metres from ways (N, 4), on some levels."""
+        low, high = ways[:, :2].min(axis=0) - aside, ways[:, :2].max(axis=0) + aside
+        return self._map.window(low, high, (float(ways[0, 0]), height, float(ways[0, 1])), levels)
 
 
 @exact_kernel
@@ -83,7 +87,7 @@ def free_at(window: Window, figure: Figure, x: float, z: float) -> float:
 @inner_exact_kernel
 def free_on(window: Window, level: int, x: float, z: float) -> float:
     """The free distance at a place on one level of the map, bilinear; the window's edge holds outside."""
-    free = window.distances[level]
+    free = window.distances[level - window.lowest]
     p = min(max((x - window.x) / CELL, 0.0), free.shape[0] - 1.0)
     q = min(max((z - window.z) / CELL, 0.0), free.shape[1] - 1.0)
     i, k = min(int(p), free.shape[0] - 2), min(int(q), free.shape[1] - 2)

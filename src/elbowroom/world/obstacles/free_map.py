@@ -1,8 +1,8 @@
 """The free distance over the ground: how far away what stands is, at every place and at several heights.
 
 It lies in the world's frame and depends on no command, no path and no body: all planners in a place share one map.
-Tiles are filled where somebody comes near and stay, since what stands never moves. What is in a tile does not depend
-on who filled it or when. Moving things are not in it.
+Tiles are filled where somebody comes near, on the levels that are asked for, and stay, since what stands never moves.
+What is in a tile does not depend on who filled it or when. Moving things are not in it.
 
 Where the ground is not the plane, heights are those above the ground in the middle of a tile, of the floor that one is
 on, and what is no higher than a step is left out: feet may step onto it.
@@ -24,6 +24,7 @@ Floats32 = NDArray[np.float32]
 Span = tuple[float, float]
 Near = Callable[[Floats, Floats, Span], Nearby]
 Start = tuple[float, float, float]
+Levels = tuple[int, int]
 
 CELL = 0.04  # metres between neighbouring points
 TILE = 16  # points on a tile's side
@@ -32,7 +33,7 @@ FARTHEST = 0.7  # metres: greater distances are not told apart
 _TALL = 0.06  # metres: half the height of the upright line that stands for a level
 _SAME = 0.01  # metres: floors that are told apart
 _ALIKE = 20  # of these: heights that are told apart where there is no floor, as far as levels are
-EVERY = (-np.inf, np.inf)  # heights
+EVERY_LEVEL = 0, len(LEVELS)
 _BLOCK = 2  # tiles by tiles that windows on plain ground are made of: who walks on needs the same for a while
 _WINDOWS = 8  # that are remembered
 _MOST = 4096  # tiles that are remembered: 40 MB
@@ -44,6 +45,7 @@ class Window(NamedTuple):
     distances: Floats32  # (levels, X, Z) metres, at most `FARTHEST`
     x: float  # of the first point, metres
     z: float
+    lowest: int  # the number in `LEVELS` of the first of these levels
 
 
 class FreeMap:
@@ -55,29 +57,30 @@ class FreeMap:
         What reaches into a span of heights.
         """
         self._near, self._ground = near, ground
-        self._tiles: dict[tuple[int, int, int], Floats32] = {}
+        self._tiles: dict[tuple[int, ...], Floats32] = {}  # by row, row, floor and levels
         self._windows: dict[tuple[int, ...], Window] = {}  # by the tiles that they hold, on plain ground
 
-    def window(self, low: Floats, high: Floats, start: Start = (0.0, 0.0, 0.0)) -> Window:
+    def window(self, low: Floats, high: Floats, start: Start = (0.0, 0.0, 0.0), levels: Levels = EVERY_LEVEL) -> Window:
         """The part between two corners (2,) on the ground, x and z; it may reach a little farther.
 
-        Of the floor that one comes to from a start (x, height, z).
+        Of the floor that one comes to from a start (x, height, z), on the levels from the first number on and before
+        the second: each costs as much as any other.
         """
         side, plain = CELL * TILE, self._ground.plain
         block = _BLOCK if plain else 1
         first = [block * int(np.floor(edge / (block * side))) for edge in low]
         last = [block * int(np.floor(edge / (block * side))) + block - 1 for edge in high]
-        ends = *first, *last
+        ends = *first, *last, *levels
         known = self._windows.get(ends) if plain else None
         if known is not None:
             return known
         wide, deep = last[0] - first[0] + 1, last[1] - first[1] + 1
-        distances = np.empty((len(LEVELS), wide * TILE, deep * TILE), np.float32)
+        distances = np.empty((levels[1] - levels[0], wide * TILE, deep * TILE), np.float32)
         for i in range(wide):
             for k in range(deep):
-                tile = self._tile(first[0] + i, first[1] + k, start)
+                tile = self._tile(first[0] + i, first[1] + k, start, levels)
                 distances[:, i * TILE : (i + 1) * TILE, k * TILE : (k + 1) * TILE] = tile
-        found = Window(distances, first[0] * side, first[1] * side)
+        found = Window(distances, first[0] * side, first[1] * side, levels[0])
         if plain:
             if len(self._windows) >= _WINDOWS:
                 self._windows.clear()
@@ -97,15 +100,18 @@ class FreeMap:
         found: Floats32 = window.distances[height > LEVELS][:, i, k].min(axis=0)
         return found
 
-    def _tile(self, i: int, k: int, start: Start) -> Floats32:
-        """The distances (levels, TILE, TILE) of the tile in row `i` along x and row `k` along z."""
+    def _tile(self, i: int, k: int, start: Start, levels: Levels) -> Floats32:
+        """The distances (levels, TILE, TILE) of the tile in row `i` along x and row `k` along z, on some levels."""
         floor = 0 if self._ground.plain else self._floor(start, _middle(i, k))
-        tile = self._tiles.get((i, k, floor))
+        tile = self._tiles.get((i, k, floor, *levels))
         if tile is None:
-            tile = self._filled(_middle(i, k), floor * _SAME)
+            whole = self._tiles.get((i, k, floor, *EVERY_LEVEL))
+            if whole is not None:
+                return whole[slice(*levels)]
+            tile = self._filled(_middle(i, k), floor * _SAME, levels)
             if len(self._tiles) >= _MOST:
                 self._tiles.clear()
-            self._tiles[i, k, floor] = tile
+            self._tiles[i, k, floor, *levels] = tile
         return tile
 
     def _floor(self, start: Start, middle: Floats) -> int:
@@ -116,15 +122,18 @@ class FreeMap:
         height = height_along(self._ground, start, float(middle[0]), float(middle[1]))
         return round(height / _SAME) if np.isfinite(height) else _ALIKE * round(start[1] / (_ALIKE * _SAME))
 
-    def _filled(self, middle: Floats, floor: float) -> Floats32:
+    def _filled(self, middle: Floats, floor: float, levels: Levels) -> Floats32:
         """A tile, reckoned from its middle: so it is as exact far from the world's origin as near to it."""
-        half = 0.5 * CELL * TILE
-        heights = EVERY if self._ground.plain else (floor + self._ground.step, floor + float(LEVELS[-1]) + FARTHEST)
+        half, these = 0.5 * CELL * TILE, slice(*levels)
+        least, most = floor + float(LEVELS[these][0]), floor + float(LEVELS[these][-1])
+        low, high = least - _TALL - FARTHEST, most + _TALL + FARTHEST
+        heights = low if self._ground.plain else max(low, floor + self._ground.step), high
         near = self._near(middle - half - FARTHEST, middle + half + FARTHEST, heights)
         if is_empty(near):
-            return _OPEN
+            return _OPEN[these]
         near = about(near, float(middle[0]), float(middle[1]), floor)
-        return clearance(_POINTS, _THIN, near, FARTHEST).reshape(_OPEN.shape)
+        points = np.ascontiguousarray(_POINTS[..., these, :]).reshape(1, 6, -1)
+        return clearance(points, _THIN, near, FARTHEST).reshape(-1, TILE, TILE)
 
 
 def _middle(i: int, k: int) -> Floats:
@@ -134,10 +143,10 @@ def _middle(i: int, k: int) -> Floats:
 
 
 def _points() -> Floats32:
-    """Upright lines (1, 6, levels TILE TILE) at all points of a tile, seen from its middle."""
+    """Upright lines (6, levels, TILE TILE) at all points of a tile, seen from its middle."""
     along = CELL * (np.arange(TILE) - 0.5 * TILE)
-    y, x, z = (part.ravel() for part in np.meshgrid(LEVELS, along, along, indexing="ij"))
-    return np.stack([x, y - _TALL, z, x, y + _TALL, z])[None].astype(np.float32)
+    y, x, z = (part.reshape(len(LEVELS), -1) for part in np.meshgrid(LEVELS, along, along, indexing="ij"))
+    return np.stack([x, y - _TALL, z, x, y + _TALL, z]).astype(np.float32)
 
 
 _POINTS, _THIN = _points(), np.zeros(1, np.float32)
