@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from elbowroom.body.gait.carriage import carried_hip
 from elbowroom.body.gait.cycle import smooth, too_high, walk_into
 from elbowroom.body.gait.foot_state import LIFT, PITCH, SWING, YAW, X, Z
+from elbowroom.body.gait.heels import Hip, behind, distance, raise_heel, too_far
 from elbowroom.body.gait.lowered_hips import hips_sink
 from elbowroom.body.gait.rises import STRETCH, is_uneven, raise_foot
 from elbowroom.body.gait.tilted_foot import ease_of, tilt_foot
@@ -22,9 +23,8 @@ from elbowroom.body.root import FOOT, RISES, ROOT_STATE
 from elbowroom.jit import helper, kernel
 
 Floats = NDArray[np.float64]
-Hip = tuple[float, float, float]  # where a leg's joint at the hip is, metres
 
-_HIP, _ANKLE, _BALL, _THIGH, _SHIN, _TOES, _PITCH_DOWN = 0, 3, 6, 8, 9, 10, 11  # columns of `GaitShape.legs`
+_HIP, _THIGH, _SHIN = 0, 8, 9  # columns of `GaitShape.legs`
 _STRETCH = 0.9992  # of a leg: no foot is farther from its hip
 _SOFTLY, _HARDLY = 0.012, 0.003  # of a leg, about that, in which hips come down; the same for a foot whose heel rises
 _UNEVEN = 0.02  # metres that ground rises or falls under the feet, from which on legs are bent as in the cycle there
@@ -35,54 +35,25 @@ _LIFTED, _LANDS = 0.3, 30  # of its swing, from which on it is; the power of it 
 
 
 @helper
-def _too_far(over: float, soft: float) -> float:
-    """How much nearer something comes that is too far off by `over`: by that, or by nothing, and no sudden turn."""
-    if over <= -soft:
-        return 0.0
-    return over if over >= soft else (over + soft) * (over + soft) / (4.0 * soft)
-
-
-@helper
-def _distance(foot: Floats, hip: Hip) -> float:
-    x, y, z = foot[0] - hip[0], foot[1] - hip[1], foot[2] - hip[2]
-    return float(np.sqrt(x * x + y * y + z * z))
-
-
-@helper
-def _behind(foot: Floats, hip: Hip) -> float:
-    """How far behind its hip a foot is, of its distance."""
-    ahead = (foot[0] - hip[0]) * np.sin(foot[3]) + (foot[2] - hip[2]) * np.cos(foot[3])
-    return float(-ahead / _distance(foot, hip))
-
-
-@helper
 def _trails(foot: Floats, hip: Hip) -> float:
     """How much a foot is one that is left behind, 0 to 1."""
-    return smooth((_behind(foot, hip) - _BEHIND) / _BEHIND)
+    return smooth((behind(foot, hip) - _BEHIND) / _BEHIND)
 
 
 @helper
-def _raise_heel(legs: Floats, side: int, flat: Floats, hip: Hip, foot: Floats) -> None:
+def _let_rise(legs: Floats, side: int, flat: Floats, hip: Hip, foot: Floats) -> None:
     """Let the heel of a foot (6,) rise that is behind its hip, so that it comes as near as the leg reaches."""
-    length, height, ball = legs[side, _THIGH] + legs[side, _SHIN], legs[side, _ANKLE + 1], legs[side, _BALL]
-    far = _distance(foot, hip)
-    nearer = _trails(foot, hip) * _too_far(far - _STRETCH * length, _GENTLY * length)
-    if nearer <= 0.0:
-        return
-    pitch, height, wanted = flat[PITCH], height - legs[side, _TOES], far - nearer
-    for _ in range(2):
-        far, sine, cosine = _distance(foot, hip), np.sin(foot[4]), np.cos(foot[4])
-        up, ahead = ball * cosine - height * sine, height * cosine + ball * sine
-        by_radian = max(_behind(foot, hip) * ahead + (hip[1] - foot[1]) / far * up, 0.5 * ball)
-        pitch += min((far - wanted) / (legs[side, _PITCH_DOWN] * by_radian), max(_STEEPEST - pitch, 0.0))
-        tilt_foot(legs, side, (flat[X], flat[Z], flat[YAW]), (pitch, flat[LIFT]), ease_of(1.0, flat[SWING]), foot)
+    length = legs[side, _THIGH] + legs[side, _SHIN]
+    nearer = _trails(foot, hip) * too_far(distance(foot, hip) - _STRETCH * length, _GENTLY * length)
+    if nearer > 0.0:
+        raise_heel(legs, side, flat, hip, nearer, _STEEPEST, foot)
 
 
 @helper
 def _lift(legs: Floats, side: int, swung: float, hip: Hip, foot: Floats) -> None:
     """Lift a swinging foot (6,) whose leg is too short; as it lands, and has just left the ground, the hips give."""
     length, share = legs[side, _THIGH] + legs[side, _SHIN], smooth(swung / _LIFTED) * (1.0 - swung**_LANDS)
-    foot[1] += share * min(_too_far(too_high(foot, hip, _STRETCH * length), _SOFTLY * length), _UP * length)
+    foot[1] += share * min(too_far(too_high(foot, hip, _STRETCH * length), _SOFTLY * length), _UP * length)
 
 
 @helper
@@ -91,7 +62,7 @@ def _put(legs: Floats, side: int, row: Floats, hip: Hip, foot: Floats) -> None:
     flat, rise, slope = row[ROOT_STATE + FOOT * side :], row[RISES + 2 * side], row[RISES + 2 * side + 1]
     place, pitch = (flat[X], flat[Z], flat[YAW]), (flat[PITCH], flat[LIFT])
     tilt_foot(legs, side, place, pitch, ease_of(1.0, flat[SWING]), foot)
-    _raise_heel(legs, side, flat, hip, foot)
+    _let_rise(legs, side, flat, hip, foot)
     if flat[SWING] > 0.0:
         _lift(legs, side, flat[SWING], hip, foot)
     if is_uneven(row):
@@ -105,7 +76,7 @@ def _dropped(legs: Floats, drop: float, stretch: float, bent: float, feet: Float
     for side in range(2):
         reach = stretch * (legs[side, _THIGH] + legs[side, _SHIN])
         hip = (legs[side, _HIP], legs[side, _HIP + 1] - drop, legs[side, _HIP + 2])
-        drop += bent * _too_far(too_high(feet[side], hip, reach), _SOFTLY * reach)
+        drop += bent * too_far(too_high(feet[side], hip, reach), _SOFTLY * reach)
     return drop
 
 
@@ -132,6 +103,6 @@ def posed_feet(legs: Floats, scale: float, half_leg: float, rows: Floats, loweri
             x, y, z = carried_hip(legs, row, lean, side)
             hip = (x, y - down, z - back)
             soft = _SOFTLY + _trails(feet[n, side], hip) * (_HARDLY - _SOFTLY)
-            down += _too_far(too_high(feet[n, side], hip, reach), soft * reach)
+            down += too_far(too_high(feet[n, side], hip, reach), soft * reach)
         sinks[n, 0], sinks[n, 1], sinks[n, 2] = down, back, lean
     return feet, sinks

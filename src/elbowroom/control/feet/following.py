@@ -101,7 +101,7 @@ def followed(
     if how != STEPS:
         glide_feet(feet.legs, feet.scale, before, planned, dt, how == HOLDS, row[:WITH_FEET])
         if not who.under.ground.plain:
-            tread_gliding(who.under, before, row, dt, how == HOLDS)
+            tread_gliding(who.under, feet, before, row, dt, how == HOLDS)
     else:
         step_on(who.under, who.feet, before, planned, dt, coming, row)
     live(who.body, before, dt, room, coming, upper[_TWIST] + upper[_HEAD_TURN], row)

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from elbowroom.body.gait.foot_state import RISING, SWING, VELOCITY, YAW, X, Z
 from elbowroom.body.gait.footholds import landing, step_feet
+from elbowroom.body.gait.heels import let_heels_rise
 from elbowroom.body.gait.landing_places import Stepper
 from elbowroom.body.root import FOOT, HEIGHT, RISES, ROOT_STATE, WITH_FEET
 from elbowroom.control.feet.landing_on_ground import NO_GROUND, Lie, level_there, set_landings
@@ -122,7 +123,7 @@ def step_on(
     """`step_feet` on any ground: the feet, and what they stand on, `dt` seconds after the row `before`.
 
     To `out` (WITH_FEET or more,). On the plane that is all of it; elsewhere feet that would land across an edge land a
-    little farther ahead or back.
+    little farther ahead or back, and heels rise under who climbs.
     """
     lands, later = np.zeros((2, 2)), np.empty(ROOT_STATE)
     if not under.ground.plain and dt > 0.0:
@@ -137,10 +138,11 @@ def step_on(
         elif dt > 0.0:
             height, slope = _settled(under, out, side, (height, slope), HASTY * dt)
         out[at], out[at + 1] = height - out[HEIGHT], slope
+    let_heels_rise(who.legs, who.scale, before, dt, out)
 
 
 @inner_exact_kernel
-def tread_gliding(under: Underfoot, before: Floats, row: Floats, dt: float, holds: bool) -> None:
+def tread_gliding(under: Underfoot, who: Stepper, before: Floats, row: Floats, dt: float, holds: bool) -> None:
     """The same for feet that glide: they are as high as the row tells, and no deeper than what is under them.
 
     If it `holds`, one that stands keeps what it stands on.
@@ -156,3 +158,5 @@ def tread_gliding(under: Underfoot, before: Floats, row: Floats, dt: float, hold
                 now = min(max(now, was - _GLIDES * dt), was + _GLIDES * dt)
             now = max(now, min(lies, was + HASTY * dt))
         row[at] = now - row[HEIGHT]
+    if holds:
+        let_heels_rise(who.legs, who.scale, before, dt, row)
