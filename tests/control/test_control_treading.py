@@ -21,7 +21,7 @@ from feet_walks import GAIT
 Floats = NDArray[np.float64]
 
 AVATAR = Humanoid.default()
-FRAME, BALL = 1 / 60, 6  # seconds; column of the gait's legs
+FRAME, BALL, HEEL = 1 / 60, 6, 7  # seconds; columns of the gait's legs
 BESIDE = {"type": "box", "center": [3.0, 0.1, 2.0], "size": [0.4, 0.2, 0.4]}
 ASKED = (Command(forward=1.0), Command(), Command(strafe=1.0), Command(turn=1.0), Command(forward=-1.0), Command())
 
@@ -52,6 +52,25 @@ def test_a_foot_on_a_sill_that_is_shorter_than_itself_stands_on_its_ball(begin: 
                 balls.append(row[1] + foot[Z] + GAIT.legs[side, BALL])
     assert balls
     assert begin - 1e-3 < min(balls) <= max(balls) < begin + 0.1 + 1e-3
+
+
+def test_a_foot_lands_on_a_heel_that_is_borne_behind_a_ridge() -> None:
+    """Up a ramp of 12 degrees to a floor: across the ridge its heel was 15 mm in the air, and it slid about that."""
+    begin, run, top = 2.0, 2.0, 2.0 * math.tan(math.radians(12.0))
+    points = [[x, y, begin + z] for x in (-0.9, 0.9) for y, z in ((0.0, 0.0), (top, run), (top, run + 3.0), (0.0, 6.0))]
+    scene = Scene.of("ramp", [{"type": "hull", "points": points, "center": [0.0, 0.0, 0.0]}], finish=(0.0, 8.0))
+    controller, airs = Controller(AVATAR, scene), list[float]()
+    while controller.root.z < begin + run + 0.5:
+        row = controller.step(ASKED[0], FRAME).root
+        for side, foot in enumerate(row[ROOT_STATE:WITH_FEET].reshape(2, -1)):
+            rise, slope = row[RISES + 2 * side : RISES + 2 * side + 2]
+            heel = GAIT.legs[side, HEEL]
+            z = row[1] + foot[Z] - heel
+            if foot[SWING] <= 0.0 and begin < z:
+                ground = min((z - begin) / run, 1.0) * top
+                airs.append(row[HEIGHT] + rise + heel * math.tan(slope) - ground)
+    assert len(airs) > 50
+    assert max(airs) < 0.01, max(airs)
 
 
 def test_feet_of_the_cycle_are_raised_alike_in_a_row_of_their_own() -> None:

@@ -1,6 +1,7 @@
 """Where feet that step land where ground is not a plane: on a tread and not across its edge, above it or below.
 
-A foot that would land across an edge lands a little farther ahead or back; how much lower than the other foot it does
+A foot that would land across an edge, or on a heel behind a ridge with nothing under it, lands a little farther ahead
+or back: there it would slide as it turns about that heel. How much lower than the other foot it does
 tells `footholds` when it has to be over its place.
 """
 
@@ -24,7 +25,8 @@ Lie = tuple[float, float]  # height and slope of what a foot stands on or swings
 
 NO_GROUND = -math.inf  # the height of no ground
 _AIR, _SHIFT, _TRIED = 0.02, 0.015, 8  # metres under ankle and ball; metres by which a foot lands elsewhere, so often
-_BALL = 6  # column of `GaitShape.legs`
+_LEVEL, _HOLLOW = 0.02, 0.006  # radians: less is level; metres under a heel
+_BALL, _HEEL = 6, 7  # columns of `GaitShape.legs`
 
 
 @helper
@@ -39,17 +41,20 @@ def level_there(under: Underfoot, row: Floats, foot: Floats, goal: Place) -> flo
 
 
 @helper
-def _bears(under: Underfoot, row: Floats, foot: Place, ball: float) -> tuple[bool, bool, Lie]:
+def _bears(under: Underfoot, row: Floats, foot: Place, ball: float, heel: float) -> tuple[bool, bool, Lie]:
     """Whether a foot at a place would have ground under its ankle, and under its ball: not under its toes alone.
 
-    And how it would lie.
+    Where it would not lie level, under its heel too, on which it comes down. And how it would lie.
     """
     lies, slope = stood_at(under.ground, under.sole, row, foot[0], foot[1], foot[2])
     x, z = in_world(row, foot[0], foot[1])
     ankle = height_at(under.ground, x, z, lies)
     x, z = in_world(row, foot[0] + ball * math.sin(foot[2]), foot[1] + ball * math.cos(foot[2]))
     front = height_at(under.ground, x, z, lies) + ball * math.tan(slope)
-    return lies > NO_GROUND and lies - ankle < _AIR, lies > NO_GROUND and lies - front < _AIR, (lies, slope)
+    x, z = in_world(row, foot[0] - heel * math.sin(foot[2]), foot[1] - heel * math.cos(foot[2]))
+    back = height_at(under.ground, x, z, lies) - heel * math.tan(slope)
+    stands = lies - ankle < _AIR and (abs(slope) < _LEVEL or lies - back < _HOLLOW)
+    return lies > NO_GROUND and stands, lies > NO_GROUND and lies - front < _AIR, (lies, slope)
 
 
 @inner_exact_kernel
@@ -59,12 +64,13 @@ def _farther_onto(under: Underfoot, who: Stepper, row: Floats, side: int, goal: 
     As little as possible. Where that is not had within a few centimetres it stands on its ball, over which it rolls;
     0 where it does not do so either. And how it lies there.
     """
-    ball, scale, onto_ball, lie = who.legs[side, _BALL], who.scale, math.inf, (NO_GROUND, 0.0)
+    ball, heel, scale = who.legs[side, _BALL], who.legs[side, _HEEL], who.scale
+    onto_ball, lie = math.inf, (NO_GROUND, 0.0)
     for k in range(2 * _TRIED + 1):
         ahead = _SHIFT * scale * ((k + 1) // 2) * (1.0 if k % 2 == 0 else -1.0)
         x, z = goal[0] + ahead * math.sin(goal[2]), goal[1] + ahead * math.cos(goal[2])
-        heel, front, there = _bears(under, row, (x, z, goal[2]), ball)
-        if heel and front:
+        back, front, there = _bears(under, row, (x, z, goal[2]), ball, heel)
+        if back and front:
             return float(ahead), there
         if (front and onto_ball == math.inf) or k == 0:
             onto_ball, lie = float(ahead) if front else math.inf, there
