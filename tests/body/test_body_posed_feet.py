@@ -101,6 +101,12 @@ def test_no_leg_is_let_go_in_one_frame(wanted: Callable[[float], Velocities]) ->
     assert np.abs(np.diff(bent, axis=1)).max() / DT < 1000.0
 
 
+def test_no_leg_is_quite_straight_as_its_foot_lands_at_two_metres_a_second() -> None:
+    """A millimetre more and its knee, which bends as the foot comes to a stand, would do so more suddenly."""
+    feet, sinks = posed(walked(path(lambda _: (2.0, 0.0, 0.0))))
+    assert max(lengths(feet, sinks, side)[150:].max() for side in range(2)) < 0.995
+
+
 def test_what_a_foot_is_pitched_otherwise_than_it_should_be_fades_as_by_a_critically_damped_spring() -> None:
     """Under a body at rest, which wants it flat; and then it is, or who rests would never stand still."""
     row, angle, soon = beside(GAIT, np.zeros(ROOT_STATE)), 0.3, 25.0

@@ -25,7 +25,7 @@ from elbowroom.jit import helper, kernel
 Floats = NDArray[np.float64]
 
 _HIP, _THIGH, _SHIN = 0, 8, 9  # columns of `GaitShape.legs`
-_STRETCH = 0.9992  # of a leg: no foot is farther from its hip
+_STRETCH = 0.99885  # of a leg: no foot is farther from its hip
 _SOFTLY, _HARDLY = 0.012, 0.003  # of a leg, about that, in which hips come down; the same for a foot whose heel rises
 _UNEVEN = 0.02  # metres that ground rises or falls under the feet, from which on legs are bent as in the cycle there
 _GENTLY, _STEEPEST = 0.007, 1.1  # of a leg, about its length, in which a heel rises; radians that it does so at most
