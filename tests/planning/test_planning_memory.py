@@ -146,7 +146,8 @@ def test_another_key_interval_is_another_memory(humanoid: Humanoid) -> None:
 
 
 def test_standing_is_standing_however_little_is_left_of_a_velocity(humanoid: Humanoid) -> None:
-    scene = Scene.load("empty")
+    beside = {"type": "box", "center": [0.7, 1.0, 0.0], "size": [0.4, 0.4, 0.4]}
+    scene = Scene.of("beside", [beside], finish=(0.0, 5.0))
     planner, roots = ExactPlanner(humanoid, scene), RootPlanner(humanoid, scene)
     upper = standing_posture(scene.start.as_array())
     searched = []

@@ -81,8 +81,8 @@ def rehearse(humanoid: Humanoid) -> None:
 def rehearse_plans(humanoid: Humanoid) -> None:
     """Plan once each way, joint step, added postures and certificate included."""
     path = _straight_on()
-    for box in (_BESIDE, _WALL):
-        body = UpperBodyPlanner(humanoid, _scene_with(*box), ExactSettings())
+    for scene in (Scene.load("empty"), _scene_with(*_BESIDE), _scene_with(*_WALL)):
+        body = UpperBodyPlanner(humanoid, scene, ExactSettings())
         start = body.model.goals(path)[0]
         search = body.plan(path, StartState(start, np.zeros_like(start))).search
         search.together(1)

@@ -28,6 +28,7 @@ from elbowroom.planning.exact.lattice.lattice import EXTRA, PREVIOUS
 from elbowroom.planning.exact.memory.previous_plan import RequiredMargins, jolts
 from elbowroom.planning.exact.plan.children import ChildSearch, GroupPaths
 from elbowroom.planning.exact.plan.evidence import EvidenceLog
+from elbowroom.planning.exact.plan.unhindered import unhindered
 from elbowroom.planning.exact.refine.blocked import Blocked
 from elbowroom.planning.exact.sweep.crouch import ROUNDS, Crouch, node_lowerings, too_deep
 from elbowroom.planning.exact.sweep.node_clearances import HELD_AT_START, held_clearance
@@ -136,6 +137,10 @@ class UpperBodySearch:
 
         One that would jolt what was planned gives way to one under the last plan's waist that costs no more, or hardly.
         """
+        free = unhindered(self.problem, self.caches)
+        if free is not None:
+            self.margins = self.problem.required
+            return free
         found, last = self.apart(), self.problem.last
         if found.failed is not None and not again:
             return None
