@@ -1,8 +1,8 @@
 """Where feet that step land where ground is not a plane: on a tread and not across its edge, above it or below.
 
 A foot that would land across an edge, or on a heel behind a ridge with nothing under it, lands a little farther ahead
-or back: there it would slide as it turns about that heel. How much lower than the other foot it does
-tells `footholds` when it has to be over its place.
+or back: there it would slide as it turns about that heel. How much lower than the other foot it does tells `footholds`
+when it has to be over its place.
 """
 
 import math
