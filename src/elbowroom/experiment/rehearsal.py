@@ -79,14 +79,15 @@ def rehearse(humanoid: Humanoid) -> None:
 
 
 def rehearse_plans(humanoid: Humanoid) -> None:
-    """Plan once each way, joint step, added postures and certificate included."""
+    """Plan once each way, joint step, added postures and certificate included; and in the open."""
     path = _straight_on()
-    for scene in (Scene.load("empty"), _scene_with(*_BESIDE), _scene_with(*_WALL)):
+    for scene in (_scene_with(*_BESIDE), _scene_with(*_WALL), Scene.load("empty")):
         body = UpperBodyPlanner(humanoid, scene, ExactSettings())
         start = body.model.goals(path)[0]
         search = body.plan(path, StartState(start, np.zeros_like(start))).search
-        search.together(1)
-        search.blockade()
+        if len(scene.obstacles):
+            search.together(1)
+            search.blockade()
     path.sample(path.times)
     jolts(start[None], start[None], 1)
     leads_to(path.states, start[None], start[None], 0, path.states[0], start, start)
