@@ -91,11 +91,15 @@ def speeds_between(body: WholeBody, frames: FramePair, axes: Floats32) -> Floats
     `axes` (C, 6, 2) are those in both frames, as seen from one place.
     """
     by, speeds = taken_apart(body), np.empty(len(axes))
+    parents, offsets, all_ends, joints = by.figure.parents, by.figure.offsets, by.capsules.ends, by.capsules.joints
+    way = np.empty(6)
     for c in range(len(speeds)):
-        reach, moved, ends, way = 0.0, 0.0, by.capsules.ends[c], axes[c, :, 1] - axes[c, :, 0]
+        reach, moved = 0.0, 0.0
+        for i in range(6):
+            way[i] = axes[c, i, 1] - axes[c, i, 0]
         for end in range(0, 6, 3):
-            reach, moved = max(reach, _length(ends, end)), max(moved, _length(way, end))
-        speeds[c] = moved + 0.5 * _bend(by.figure.parents, by.figure.offsets, frames, by.capsules.joints[c], reach)
+            reach, moved = max(reach, _length(all_ends[c], end)), max(moved, _length(way, end))
+        speeds[c] = moved + 0.5 * _bend(parents, offsets, frames, joints[c], reach)
     return speeds
 
 
