@@ -18,8 +18,28 @@ _MET = 0.10  # metres: what is nearer than this to the middle of a way on some l
 
 
 def low_places(narrow: NarrowPlaces, ways: Floats, height: float) -> Floats:
-    """The low ones (K, 3) of ways (N, 4), as in `NarrowPlaces.on`: places x, z and how high they are, metres."""
+    """The low ones (K, 3) of ways (N, 4), as in `NarrowPlaces.on`: places x, z and how high they are, metres.
+
+    Where nothing is met on a level that makes a way low the levels below are not looked at.
+    """
+    lowest = int(np.searchsorted(LEVELS, LEAST * narrow.figure.tall - _UP - _MET))
+    above = narrow.around(ways, height, _BESIDE + CELL, (min(lowest, len(LEVELS) - 1), len(LEVELS)))
+    if not _is_met(above, ways):
+        return np.empty((0, 3))
     return _low_ones(narrow.around(ways, height, _BESIDE + CELL), narrow.figure, ways)
+
+
+@exact_kernel
+def _is_met(window: Window, ways: Floats) -> bool:
+    """Whether anything is in one of the ways (N, 4) on a level of the window."""
+    for n in range(ways.shape[0]):
+        for side in range(-1, 2):
+            aside = side * _BESIDE
+            x, z = ways[n, 0] + aside * ways[n, 3], ways[n, 1] - aside * ways[n, 2]
+            for level in range(window.lowest, window.lowest + window.distances.shape[0]):
+                if free_on(window, level, x, z) < _MET:
+                    return True
+    return False
 
 
 @exact_kernel
