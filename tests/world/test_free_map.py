@@ -49,8 +49,8 @@ def test_some_levels_are_as_in_the_whole(place: list[dict[str, object]]) -> None
     for levels in ((6, 7), (0, 3), (2, len(LEVELS))):
         for free in (alone, whole_first):
             some = free.window(low, high, levels=levels)
-            assert (some.x, some.z, some.lowest) == (whole.x, whole.z, levels[0])
-            np.testing.assert_array_equal(some.distances, whole.distances[slice(*levels)])
+            assert (some.x, some.z, some.lowest) == (whole.x, whole.z, 0 if scene.ground.plain else levels[0])
+            np.testing.assert_array_equal(some.distances, whole.distances[some.lowest :][: len(some.distances)])
 
 
 def test_a_level_costs_a_level() -> None:
@@ -66,3 +66,6 @@ def test_a_level_costs_a_level() -> None:
     ((low, high),) = asked
     assert low > LEVELS[6] - 0.8
     assert high - low < 1.6
+    free.distances(np.zeros((1, 2)), 1.0)
+    assert len(free.window(np.zeros(2), np.array([0.1, 0.1]), levels=(6, 7)).distances) == len(LEVELS)
+    assert len(asked) == 2

@@ -59,18 +59,20 @@ class FreeMap:
         self._near, self._ground = near, ground
         self._tiles: dict[tuple[int, ...], Floats32] = {}  # by row, row, floor and levels
         self._windows: dict[tuple[int, ...], Window] = {}  # by the tiles that they hold, on plain ground
+        self._whole = ground.plain  # whether all levels are filled: there is little to fill, or others ask for them too
 
     def window(self, low: Floats, high: Floats, start: Start = (0.0, 0.0, 0.0), levels: Levels = EVERY_LEVEL) -> Window:
         """The part between two corners (2,) on the ground, x and z; it may reach a little farther.
 
         Of the floor that one comes to from a start (x, height, z), on the levels from the first number on and before
-        the second: each costs as much as any other.
+        the second, or on more of them: each costs as much as any other.
         """
         side, plain = CELL * TILE, self._ground.plain
+        levels = EVERY_LEVEL if self._whole else levels
         block = _BLOCK if plain else 1
         first = [block * int(np.floor(edge / (block * side))) for edge in low]
         last = [block * int(np.floor(edge / (block * side))) + block - 1 for edge in high]
-        ends = *first, *last, *levels
+        ends = *first, *last
         known = self._windows.get(ends) if plain else None
         if known is not None:
             return known
@@ -90,8 +92,10 @@ class FreeMap:
     def distances(self, places: Floats, height: float, floor: float = 0.0) -> Floats32:
         """How far what stands lower than `height` is from places (..., 2), x and z, to some centimetres.
 
-        `floor` is the height of the ground at the first place.
+        `floor` is the height of the ground at the first place. Frames ask for that, and would wait for what no plan has
+        had filled: from now on all levels are.
         """
+        self._whole = True
         ends = places.reshape(-1, 2)
         low, high = (edge(ends, axis=0) for edge in (np.min, np.max))
         window = self.window(low, high, (float(ends[0, 0]), floor, float(ends[0, 1])))
