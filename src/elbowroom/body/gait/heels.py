@@ -20,7 +20,7 @@ Hip = tuple[float, float, float]  # where a leg's joint at the hip is, metres
 
 _HIP, _ANKLE, _BALL, _THIGH, _SHIN, _TOES, _PITCH_DOWN = 0, 3, 6, 8, 9, 10, 11  # columns of `GaitShape.legs`
 _BENT, _SOFTLY = 0.975, 0.015  # of a leg: how far from its hip a foot is left by who climbs, about so much of it
-_STEEP = 0.8  # radians that its heel rises at most so
+_STEEP = 0.6  # radians that its heel rises at most so
 _CLIMBS, _BEHIND = 0.15, 0.14  # m/s up, and of its distance that it is behind its hip, at which it does so fully
 
 
