@@ -2,8 +2,8 @@
 
 A pair is two capsules, seen from the pelvis or from the chest. How far they can move against each other is what each
 component of the body moves in a part of a key interval, times the pair's levers. Feet are looked at on what they stand
-on at that moment, and rise evenly from one of the first looks to the next. An interval that was looked at for an
-earlier plan is known by its content, on uneven ground by its place too. It is one compiled call.
+on at that moment. An interval that was looked at for an earlier plan is known by its content, on uneven ground by its
+place too. It is one compiled call.
 """
 
 from typing import NamedTuple
@@ -191,22 +191,19 @@ def _prove(parts: OwnParts, feet: _Feet, shown: Shown, chosen: Indices, least: F
         for n in range(looks):
             intervals[i * looks + n], moments[i * looks + n] = chosen[i], n / _PARTS
         _set_moves(shown, chosen[i], moves[i * _PARTS : (i + 1) * _PARTS])
-    roots = _roots_at(shown, intervals, moments)
-    if not feet.under.ground.plain:
-        recall_rises(feet.known, feet.under, parts.body.gait_legs, parts.body.scale, roots)
+    roots = _roots_at(parts, feet, shown, intervals, moments)
     lengths = _lengths(parts.levers, moves)
     if not feet.under.ground.plain:
         _add_raising(parts.levers, roots, lengths)
     proof = begun(_gaps(parts, shown, roots, intervals, moments), lengths, _PARTS, _AFAR, _HALVINGS)
     wanted, shares = np.empty(_LOOKS, np.int64), np.empty(_LOOKS)
-    among, at = np.empty(_LOOKS, np.int64), np.empty(_LOOKS)
     more = due(proof, wanted, shares)
     while more > 0:
         for n in range(more):
-            among[n], at[n] = chosen[wanted[n] // _PARTS], (wanted[n] % _PARTS + shares[n]) / _PARTS
-        halved = _roots_at(shown, among[:more], at[:more])
-        _raise_between(roots, wanted[:more], shares[:more], halved)
-        settle(proof, _gaps(parts, shown, halved, among[:more], at[:more]), more)
+            shares[n] = (wanted[n] % _PARTS + shares[n]) / _PARTS
+            wanted[n] = chosen[wanted[n] // _PARTS]
+        roots = _roots_at(parts, feet, shown, wanted[:more], shares[:more])
+        settle(proof, _gaps(parts, shown, roots, wanted[:more], shares[:more]), more)
         more = due(proof, wanted, shares)
     for b in range(proof.least.shape[0]):
         k = chosen[b // _PARTS]
@@ -249,35 +246,23 @@ def _add_raising(levers: Floats, roots: Floats, lengths: Floats) -> None:
 
 
 @inner_exact_kernel
-def _roots_at(shown: Shown, intervals: Indices, shares: Floats) -> Floats:
-    """The root states (N, ROOT_STATE) at shares (N,) of `intervals` (N,), their feet on the plane."""
+def _roots_at(parts: OwnParts, feet: _Feet, shown: Shown, intervals: Indices, shares: Floats) -> Floats:
+    """The root states (N, ROOT_STATE) at shares (N,) of `intervals` (N,), on what the feet stand on, at the origin."""
     roots = np.zeros((shares.shape[0], ROOT_STATE))
     for n in range(roots.shape[0]):
         k = intervals[n]
         state = interpolate_root(shown.states[k], shown.states[k + 1], shares[n], shown.interval)
         for j in range(state.shape[0]):
             roots[n, j] = state[j]
+    if not feet.under.ground.plain:
+        recall_rises(feet.known, feet.under, parts.body.gait_legs, parts.body.scale, roots)
+    roots[:, :3] = 0.0
     return roots
-
-
-@helper
-def _raise_between(roots: Floats, parts: Indices, shares: Floats, out: Floats) -> None:
-    """Raise feet in root states `out` (N, ROOT_STATE), at shares (N,) of parts (N,), evenly between the first looks.
-
-    To look up what they stand on costs more than all else, and nothing is said of it between looks.
-    """
-    for n in range(out.shape[0]):
-        before = parts[n] + parts[n] // _PARTS
-        for j in range(RISES, ROOT_STATE):
-            out[n, j] = (1.0 - shares[n]) * roots[before, j] + shares[n] * roots[before + 1, j]
 
 
 @exact_kernel
 def _gaps(parts: OwnParts, shown: Shown, roots: Floats, intervals: Indices, shares: Floats) -> Floats32:
-    """The gaps (N, P) of the pairs at shares (N,) of `intervals` (N,), metres beyond what they may come near.
-
-    Roots are taken to the origin, for single precision.
-    """
+    """The gaps (N, P) of the pairs at shares (N,) of `intervals` (N,), metres beyond what they may come near."""
     keys, rates, interval = shown.keys, shown.rates, shown.interval
     count, first = shares.shape[0], DOF - keys.shape[1]
     postures = np.zeros((count, DOF))
@@ -286,9 +271,7 @@ def _gaps(parts: OwnParts, shown: Shown, roots: Floats, intervals: Indices, shar
         for j in range(keys.shape[1]):
             a, b, m, e = keys[k, j], keys[k + 1, j], interval * rates[k, j], interval * rates[k + 1, j]
             postures[n, first + j] = a + u * (m + u * (3.0 * (b - a) - 2.0 * m - e + u * (2.0 * (a - b) + m + e)))
-    there = roots.copy()
-    there[:, :3] = 0.0
-    capsules, _, _ = posed_body(parts.body, postures, there)
+    capsules, _, _ = posed_body(parts.body, postures, roots)
     gaps = np.empty((count, parts.first.shape[0]), np.float32)
     for p in range(parts.first.shape[0]):
         found = clear_pairs(capsules[parts.first[p]], capsules[parts.second[p]])
