@@ -7,11 +7,11 @@ import typer
 
 from elbowroom.cli.options import clips as clip_options
 from elbowroom.cli.options.arguments import check_arguments
-from elbowroom.cli.options.avatar import Avatar, Bones, Height, IncludeHair, chosen_avatar, settings_by
+from elbowroom.cli.options.avatar import Avatar, Bones, Height, IncludeHair, settings_by
+from elbowroom.cli.options.controller import chosen_controller
 from elbowroom.cli.options.going import told_place
 from elbowroom.cli.options.place import Drop, GroundHeight, Passable, Scale, UpAxis, open_scene, place_options
-from elbowroom.cli.telling.first_run import compile_first
-from elbowroom.cli.telling.output import PLANNER_HELP, QUEUE_HELP, SCENE_HELP, print_json, print_row, progress_bar
+from elbowroom.cli.telling.output import PLANNER_HELP, QUEUE_HELP, SCENE_HELP, print_json, print_row
 from elbowroom.cli.telling.spoken import said
 from elbowroom.cli.telling.time_left import time_left_bar
 from elbowroom.clips.style_names import PLAIN_NAME
@@ -66,16 +66,9 @@ def tour(
     check_arguments(clips=clip_options.named_by(swing, dodge))
     told, reading = place_options(scale, up, ground, drop, passable), settings_by(bones, height, include_hair)
     settings = CrossingSettings(planner, queue, seed)
-    from elbowroom.experiment.crossing import controller_for, warm_up
-
     motions = clip_options.motions_by(swing, dodge, clip_options.told_by(None, None, None), style)
     place = open_scene(scene, told, quiet)
-    with progress_bar(said("Opening the avatar"), None, quiet):
-        humanoid = chosen_avatar(avatar, reading)
-    compile_first(quiet=quiet)
-    with progress_bar(said("Opening the avatar"), None, quiet):
-        controller = controller_for(humanoid, place, settings, motions)
-        warm_up(controller)
+    controller = chosen_controller(avatar, reading, place, settings, motions, quiet=quiet)
     shown, result = _walked(controller, targets, record, quiet)
     if plan is not None:
         _draw(plan, controller, shown, result)

@@ -9,11 +9,11 @@ import typer
 from elbowroom.cli.options import clips as clip_options
 from elbowroom.cli.options import vmc as vmc_options
 from elbowroom.cli.options.arguments import check_arguments
-from elbowroom.cli.options.avatar import Avatar, Bones, Height, IncludeHair, chosen_avatar, settings_by
+from elbowroom.cli.options.avatar import Avatar, Bones, Height, IncludeHair, settings_by
+from elbowroom.cli.options.controller import chosen_controller
 from elbowroom.cli.options.going import TO_HELP, place_of, report_leg
 from elbowroom.cli.options.place import Drop, GroundHeight, Passable, Scale, is_model, open_scene, place_options
 from elbowroom.cli.options.vmc import check_vmc, in_time, stream_to
-from elbowroom.cli.telling.first_run import compile_first
 from elbowroom.cli.telling.output import PLANNER_HELP, QUEUE_HELP, SCENE_HELP, Bar, print_json, print_row, progress_bar
 from elbowroom.cli.telling.spoken import said
 from elbowroom.clips.style_names import PLAIN_NAME
@@ -83,22 +83,16 @@ def walk(
     reading = settings_by(bones, height, include_hair)
     settings = CrossingSettings(planner, queue, seed, limit)
     from elbowroom.control.recordings.recording import Recorder
-    from elbowroom.experiment.crossing import controller_for, warm_up
 
     motions = clip_options.motions_by(swing, dodge, of_clips, style)
     place = open_scene(scene, told, quiet)
-    with progress_bar(said("Opening the avatar"), None, quiet):
-        humanoid = chosen_avatar(avatar, reading)
-    compile_first(quiet=quiet)
-    with progress_bar(said("Opening the avatar"), None, quiet):
-        controller = controller_for(humanoid, place, settings, motions)
-        warm_up(controller)
+    controller = chosen_controller(avatar, reading, place, settings, motions, quiet=quiet)
     with (
         progress_bar(said("Walking through {0}", place.title), limit, quiet) as bar,
         nullcontext() if record is None else Recorder(record, controller) as recorder,
         stream_to(vmc, vmc_root, bundles=vmc_bundles) or nullcontext() as stream,
     ):
-        outcome = _walked(controller, settings, target or scene, _listener(bar, recorder, stream, humanoid))
+        outcome = _walked(controller, settings, target or scene, _listener(bar, recorder, stream, controller.humanoid))
     raise typer.Exit(0 if _told(outcome, place.name, record, json) else FELL_SHORT)
 
 
