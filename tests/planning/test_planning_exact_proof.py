@@ -69,7 +69,9 @@ class Body:
             roots.places[root], above.entries.keys[on],
         )  # fmt: skip
         limb = MovedLimb(self.postures[group], self.levers[group], self.chain)
-        at, _ = limb_sweep(new_scratch(limb.postures, self.chain.waist, near), ways, limb, carried_by, ends, near, 0.0)
+        at, _ = limb_sweep(
+            new_scratch(limb.postures, self.chain.waist, near, 8), ways, limb, carried_by, ends, near, 0.0
+        )
         return at
 
     def world(self, roots: Floats, waists: Floats, arms: Floats) -> tuple[Floats, Floats]:

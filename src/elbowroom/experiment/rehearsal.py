@@ -243,7 +243,7 @@ def rehearse_proof(humanoid: Humanoid) -> None:
     box = _one_box((postures.reach, 0.0, 0.0), (0.01, 0.01, 0.01)).standing
     ends = (rest[0], rest[0], rest[0], rest[0])
     moved = MovedLimb(postures, levers_of(model, limb), chain)
-    limb_sweep(new_scratch(postures, chain.waist, box), ways, moved, carrier, ends, box, 0.0)
+    limb_sweep(new_scratch(postures, chain.waist, box, 1), ways, moved, carrier, ends, box, 0.0)
 
 
 # All of them, by names; those that take longest to compile come first.

@@ -40,11 +40,11 @@ class ClearanceScratch(NamedTuple):
 
 
 @inner_exact_kernel
-def clearance_scratch(tiles: int, capsules: int, near: Nearby) -> ClearanceScratch:
-    """Room for checks of so many tiles, or of single capsules, against no more than what is `near`."""
+def clearance_scratch(tiles: int, capsules: int, count: int) -> ClearanceScratch:
+    """Room for checks of so many tiles, or of single capsules, against up to `count` obstacles."""
     flat = np.empty(capsules * TILE, np.float32)
     return ClearanceScratch(
-        np.empty(near.rows.shape[0] * ROW, np.float32),
+        np.empty(count * ROW, np.float32),
         np.empty((5, (tiles + LANES - 1) // LANES * LANES), np.float32),
         np.empty(tiles * LANES, np.float32),
         np.empty((_PAIRS + tiles, 2), np.int64),
@@ -166,7 +166,7 @@ def lower_blocks(lanes: Floats32, balls: Floats, near: Nearby, count: int, out: 
 
     What is farther away than `COMFORT` is left out. Returns the capsules that were checked.
     """
-    scratch = clearance_scratch(lanes.shape[0] * lanes.shape[1], lanes.shape[1], near)
+    scratch = clearance_scratch(lanes.shape[0] * lanes.shape[1], lanes.shape[1], near.rows.shape[0])
     spread_balls(balls, scratch.spread)
     return int(lower_blocks_in(scratch, lanes.reshape(lanes.size), scratch.spread, near, count, out))
 
@@ -231,7 +231,7 @@ def capsule_clearances(lanes: Floats32, near: Nearby, count: int, out: Floats32)
 
     What is farther away than `COMFORT` is left out. Returns how many were checked.
     """
-    scratch = clearance_scratch(lanes.shape[0], lanes.shape[0], near)
+    scratch = clearance_scratch(lanes.shape[0], lanes.shape[0], near.rows.shape[0])
     scratch.lanes[:] = lanes
     return int(capsule_clearances_in(scratch, near, count, out))
 

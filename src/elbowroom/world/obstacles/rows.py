@@ -63,6 +63,16 @@ def is_empty(near: Nearby) -> bool:
     return not len(near.rows)
 
 
+def number_of(near: Nearby) -> int:
+    """The number of obstacles."""
+    return len(near.rows)
+
+
+def has_room_for(room: Nearby, near: Nearby) -> bool:
+    """Whether a room was made for obstacles with the shapes that these have, and for as many."""
+    return len(near.rows) <= len(room.rows) and near.packed is room.packed
+
+
 def any_in(spans: Spans) -> bool:
     """Whether there is anything in any of the spans."""
     return bool(spans.rows.size)

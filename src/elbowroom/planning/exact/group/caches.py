@@ -23,6 +23,7 @@ from elbowroom.planning.exact.sweep.motion_bounds import (
 from elbowroom.planning.exact.sweep.node_clearances import NodeClearances, new_node_clearances
 from elbowroom.planning.exact.sweep.own_body_nodes import OwnBodyNodes
 from elbowroom.planning.exact.sweep.own_motion import OwnMotion, parts_of
+from elbowroom.planning.exact.sweep.scratch import KeptScratch
 from elbowroom.planning.model.footing import Underfoot
 
 _CACHED = 5  # times the horizon: as many results of key intervals are remembered
@@ -39,6 +40,18 @@ class GroupCache(NamedTuple):
     chain: KinematicChain
 
 
+class Searched(NamedTuple):
+    """What the searches of one group have from each other."""
+
+    cache: GroupCache
+    scratch: KeptScratch
+
+    @staticmethod
+    def of(cache: GroupCache) -> "Searched":
+        """With room to work on."""
+        return Searched(cache, KeptScratch(cache.group.postures, cache.chain.waist))
+
+
 class TrunkCache:
     """The trunk as one limb, with the waist's postures: made when it is asked for, as few plans need it."""
 
@@ -46,17 +59,18 @@ class TrunkCache:
         self._made_of = model, waist, cache, horizon
 
     @cached_property
-    def cache(self) -> GroupCache:
+    def searched(self) -> Searched:
         """As a group's."""
         model, waist, cache, horizon = self._made_of
-        made = model.trunk_set(waist)
-        return cache._replace(group=_group(made, _new_tables(made, horizon), _new_sweeps(horizon, DofGroup.WAIST)))
+        group = model.trunk_set(waist)
+        made = _group(group, _new_tables(group, horizon), _new_sweeps(horizon, DofGroup.WAIST))
+        return Searched.of(cache._replace(group=made))
 
 
 class PlanCaches(NamedTuple):
     """All results, of plans over at most `horizon` key intervals."""
 
-    groups: Mapping[DofGroup, GroupCache]
+    groups: Mapping[DofGroup, Searched]
     trunk: TrunkCache  # the waist with all that follows it
     own_nodes: Mapping[DofGroup, OwnBodyNodes]  # of the groups that hang on the waist
     own_motion: OwnMotion
@@ -66,16 +80,16 @@ class PlanCaches(NamedTuple):
     @property
     def roots(self) -> RootSweeps:
         """The sweeps of the root."""
-        return self.groups[DofGroup.WAIST].roots
+        return self.groups[DofGroup.WAIST].cache.roots
 
     @property
     def span(self) -> float:
         """No point of the upper body gets farther from the root's axis, metres."""
-        return self.groups[DofGroup.WAIST].chain.span
+        return self.groups[DofGroup.WAIST].cache.chain.span
 
     def group(self, group: DofGroup) -> Group:
         """A group with its results."""
-        return self.groups[group].group
+        return self.groups[group].cache.group
 
 
 def new_caches(
@@ -86,8 +100,8 @@ def new_caches(
     sweeps = {group: _new_sweeps(horizon, group) for group in LOCAL_GROUPS}
     waists = sweeps[DofGroup.WAIST]
     made = {group: _group(sets[group], _new_tables(sets[group], horizon), sweeps[group]) for group in LOCAL_GROUPS}
-    groups = {group: GroupCache(made[group], roots, waists, model.chain) for group in LOCAL_GROUPS}
-    trunk = TrunkCache(model, sets[DofGroup.WAIST], groups[DofGroup.WAIST], horizon)
+    groups = {group: Searched.of(GroupCache(made[group], roots, waists, model.chain)) for group in LOCAL_GROUPS}
+    trunk = TrunkCache(model, sets[DofGroup.WAIST], groups[DofGroup.WAIST].cache, horizon)
     own_nodes = {group: _own_nodes(model, group, sets[group]) for group in CHILDREN}
     rises = new_known_rises(underfoot)
     own_motion = OwnMotion(model.own_parts, underfoot, rises=rises)
@@ -97,13 +111,13 @@ def new_caches(
 
 def with_set(caches: PlanCaches, model: UpperBodyModel, group: DofGroup, made: PostureSet) -> PlanCaches:
     """The same with another posture set for a group; its sweeps stay, as others' results are known by them."""
-    old = caches.groups[group]
+    old = caches.groups[group].cache
     cache = old._replace(group=_group(made, _new_tables(made, caches.horizon), old.group.sweeps))
     own_nodes = dict(caches.own_nodes)
     if group in own_nodes:
         own_nodes[group] = _own_nodes(model, group, made)
     trunk = TrunkCache(model, made, cache, caches.horizon) if group is DofGroup.WAIST else caches.trunk
-    return caches._replace(groups={**caches.groups, group: cache}, trunk=trunk, own_nodes=own_nodes)
+    return caches._replace(groups={**caches.groups, group: Searched.of(cache)}, trunk=trunk, own_nodes=own_nodes)
 
 
 def _group(made: PostureSet, tables: NodeClearances, sweeps: LimbSweeps) -> Group:

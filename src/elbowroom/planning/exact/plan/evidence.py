@@ -4,13 +4,12 @@ from collections.abc import Iterable
 from time import perf_counter_ns
 
 from elbowroom.body.dof import DofGroup
-from elbowroom.planning.exact.group.caches import GroupCache, PlanCaches
+from elbowroom.planning.exact.group.caches import PlanCaches, Searched
 from elbowroom.planning.exact.group.problem import GroupPath, GroupTask, Weights
 from elbowroom.planning.exact.group.search import search_group
 from elbowroom.planning.exact.joint.step import JointStep
 from elbowroom.planning.exact.lattice.closed_edges import ClosedEdges, new_closed_edges
 from elbowroom.planning.exact.lattice.lattice import EXTRA
-from elbowroom.planning.exact.sweep.scratch import new_scratch
 from elbowroom.planning.motion import GoOn
 from elbowroom.planning.result import GroupEvidence, JointEvidence, PlanStatus
 from elbowroom.world.obstacles.rows import span_of
@@ -33,8 +32,8 @@ class EvidenceLog:
 
     def search(self, group: DofGroup, task: GroupTask, *, trunk: bool = False) -> GroupPath:
         """`search_group` with all edges open, entered under `group`; of the whole trunk, if told so, as one limb."""
-        cache = self._caches.trunk.cache if trunk else self._caches.groups[group]
-        return self._searched(group, cache, task, None)[0]
+        searched = self._caches.trunk.searched if trunk else self._caches.groups[group]
+        return self._searched(group, searched, task, None)[0]
 
     def search_again(
         self, group: DofGroup, task: GroupTask, closed: ClosedEdges | None
@@ -45,13 +44,12 @@ class EvidenceLog:
         return self._searched(group, self._caches.groups[group], task, closed)
 
     def _searched(
-        self, group: DofGroup, cache: GroupCache, task: GroupTask, closed: ClosedEdges | None
+        self, group: DofGroup, searched: Searched, task: GroupTask, closed: ClosedEdges | None
     ) -> tuple[GroupPath, ClosedEdges]:
         self.go_on()
-        began, horizon, postures = perf_counter_ns(), len(task.goals) - 1, cache.group.postures
-        edges = closed or new_closed_edges(horizon, postures.moves.shape[1] + EXTRA)
-        scratch = new_scratch(postures, cache.chain.waist, span_of(task.obstacles, 0))
-        path, edges = search_group(scratch, cache, task, self._weights, edges)
+        began, horizon, (cache, scratch) = perf_counter_ns(), len(task.goals) - 1, searched
+        edges = closed or new_closed_edges(horizon, cache.group.postures.moves.shape[1] + EXTRA)
+        path, edges = search_group(scratch.past(span_of(task.obstacles, 0)), cache, task, self._weights, edges)
         spent = perf_counter_ns() - began
         status = PlanStatus.FOUND if path.reached == horizon else PlanStatus.EXHAUSTED
         self._rows.append(GroupEvidence(group, status, path.checks, path.nodes, 0, spent))

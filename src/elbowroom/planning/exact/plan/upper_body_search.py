@@ -32,7 +32,6 @@ from elbowroom.planning.exact.plan.unhindered import unhindered
 from elbowroom.planning.exact.refine.blocked import Blocked
 from elbowroom.planning.exact.sweep.crouch import ROUNDS, Crouch, node_lowerings, too_deep
 from elbowroom.planning.exact.sweep.node_clearances import HELD_AT_START, held_clearance
-from elbowroom.planning.exact.sweep.scratch import new_scratch
 from elbowroom.planning.model.lowered_legs import LoweredLegs
 from elbowroom.planning.motion import GoOn, keep_going
 from elbowroom.planning.result import Blockade, LocalPlan, PlanStatus
@@ -398,7 +397,7 @@ class UpperBodySearch:
             carriers = caches.group(DofGroup.WAIST).sweeps
             places, turns = carriers.places[waist.entries[0]], carriers.turns[waist.entries[0]]
         postures, obstacles = caches.group(group).postures, span_of(self.problem.near.spans, 0)
-        scratch = new_scratch(postures, postures.limb, obstacles)
+        scratch = caches.groups[group].scratch.past(obstacles)
         clearance, _ = held_clearance(scratch, postures, task.start, places, turns, obstacles, HELD_AT_START)
         return max(0.5 * clearance, 0.0)
 

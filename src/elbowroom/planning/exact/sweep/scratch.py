@@ -1,4 +1,4 @@
-"""What the kernels of a search work on, made once for a search: the smaller the work, the dearer new arrays are."""
+"""What the kernels of a search work on, kept for the next: the smaller the work, the dearer new arrays are."""
 
 from typing import NamedTuple
 
@@ -18,9 +18,10 @@ from elbowroom.world.obstacles.blocks import (
     spread_balls,
 )
 from elbowroom.world.obstacles.layout import Nearby
-from elbowroom.world.obstacles.rows import how_many, room_for, shift
+from elbowroom.world.obstacles.rows import has_room_for, number_of, room_for, shift
 
 _BLOCK = plain(BLOCK)  # postures that are posed at once
+_FEW, _SPARE = 8, 2  # obstacles for which there is room at least, and room for so many times those that there are
 
 Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
@@ -53,19 +54,19 @@ class Scratch(NamedTuple):
 
 
 @exact_kernel
-def new_scratch(postures: Postures, stem: Limb, obstacles: Nearby) -> Scratch:
-    """Room for a search among `postures` on the waist's limb `stem`, past no more than these obstacles."""
+def new_scratch(postures: Postures, stem: Limb, obstacles: Nearby, most: int) -> Scratch:
+    """Room for a search among `postures` on the waist's limb `stem`, past up to `most` such obstacles."""
     limb = postures.limb
     count, size = limb.radii.shape[0], postures.configurations.shape[1]
-    checks = clearance_scratch(postures.lanes.shape[0] * count, count, obstacles)
+    checks = clearance_scratch(postures.lanes.shape[0] * count, count, most)
     spread = np.empty(checks.spread.shape, np.float32)
     spread_balls(postures.balls, spread)
     return Scratch(
         checks,
         limb_scratch(limb, _BLOCK),
         limb_scratch(stem, _BLOCK),
-        room_for(obstacles, how_many(obstacles)),
-        room_for(obstacles, how_many(obstacles)),
+        room_for(obstacles, most),
+        room_for(obstacles, most),
         postures.lanes.reshape(postures.lanes.size),
         spread,
         np.empty((postures.lanes.shape[0], BLOCK), np.float32),
@@ -82,6 +83,21 @@ def new_scratch(postures: Postures, stem: Limb, obstacles: Nearby) -> Scratch:
         np.empty(1 + 4 * size),
         np.empty(6),
     )
+
+
+class KeptScratch:
+    """The scratch of one walker's searches among the same postures, which come one after the other."""
+
+    def __init__(self, postures: Postures, stem: Limb) -> None:
+        """`stem`: the waist's limb."""
+        self._made_of = postures, stem
+        self._scratch: Scratch | None = None
+
+    def past(self, obstacles: Nearby) -> Scratch:
+        """Room for a search past no more than these obstacles; made anew where there are more than before."""
+        if self._scratch is None or not has_room_for(self._scratch.near, obstacles):
+            self._scratch = new_scratch(*self._made_of, obstacles, _SPARE * max(number_of(obstacles), _FEW))
+        return self._scratch
 
 
 @inner_exact_kernel
