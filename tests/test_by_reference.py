@@ -1,5 +1,7 @@
 """Tuples that kernels are handed by reference: the same to Python, and one pointer to kernels."""
 
+import copy
+import pickle
 import sys
 from collections.abc import Callable
 from typing import Any, NamedTuple, TypeVar, cast
@@ -101,6 +103,25 @@ def test_kernels_hand_on_one_pointer() -> None:
     (code,) = code_of(only_looked_into).inspect_llvm().values()
     (begins,) = (line for line in code.splitlines() if line.startswith("define") and "i32 @_ZN" in line)
     assert begins.split("(", 1)[1].count("%") == 3  # where the answer goes, where an error goes, and the tuple
+
+
+def test_numba_is_told_once_what_a_tuple_is(monkeypatch: pytest.MonkeyPatch) -> None:
+    asked: list[object] = []
+    monkeypatch.setattr(numba.core.dispatcher.Dispatcher, "typeof_pyval", lambda _, value: asked.append(value))
+    outer = made()
+    for _ in range(5):
+        told(outer)
+        told(made(9))
+    assert asked == []
+
+
+def test_a_copy_is_a_tuple_like_any_other() -> None:
+    outer = made()
+    told(outer)
+    for copied in (pickle.loads(pickle.dumps(outer)), copy.deepcopy(outer), outer._replace(chosen=True)):
+        assert type(copied) is Outer
+        assert told(copied) == told(outer)
+        assert copied.inner.numbers.tolist() == outer.inner.numbers.tolist()
 
 
 def test_others_fields_are_another_type() -> None:

@@ -5,14 +5,20 @@ search knows of a limb is some hundreds. To take tuples apart and put them toget
 compiling took. So what Python makes, and kernels look into, is marked with `@by_reference`. It remains the same tuple
 to Python; a kernel is handed where it lies, and reads a field of it wherever it names that field.
 
+At each call Numba asks what its arguments are: of a tuple the names of all its fields, and the kind of every array. For
+a tuple by reference that is found out once, and the tuple remembers it: so it is for what lives long. Whatever such a
+tuple is handed over in is one by reference too, or Numba would ask in Python, and take longer than many a kernel.
+
 Kernels cannot give one back, nor unpack one: they name its fields. One that a kernel makes itself is passed on as
 Numba does it, and is another type to the kernels that it is passed to.
 """
 
 import hashlib
-from typing import Any, TypeVar
+from functools import cached_property
+from typing import Any, TypeVar, cast
 
 import numba
+import numpy as np
 from llvmlite import ir
 from numba.core.typing.templates import AttributeTemplate
 
@@ -20,6 +26,10 @@ Class = TypeVar("Class", bound=type)
 
 _extending: Any = numba.extending  # Numba's way in for types of one's own, which has no types itself
 _NUMBER = ir.IntType(32)
+_TYPE = "_numba_type_"  # where Numba looks for the type of what it does not know
+_typeof: Any = numba.typeof
+_tuples: Any = numba.types.BaseTuple
+_arrays: dict[tuple[Any, ...], Any] = {}  # Numba's type of each kind of array
 
 
 class Reference(numba.types.Type):
@@ -37,14 +47,48 @@ class Reference(numba.types.Type):
         return self.whole.types[fields.index(field)] if field in fields else None
 
 
+class _Named(type):
+    """A class of named tuples to Numba, which knows them by `_asdict`, though its tuples are none.
+
+    Of what it takes for a named tuple it asks the names of all fields before it asks for its type.
+    """
+
+    def _asdict(cls) -> None:
+        """Is there: that is all that Numba wants of it."""
+
+
 def by_reference(tuples: Class) -> Class:
     """Hand tuples of this class to kernels by reference."""
+    named: Any = tuples
+    del named._asdict
+    members = {
+        "__module__": tuples.__module__,
+        "__qualname__": tuples.__qualname__,
+        "__doc__": tuples.__doc__,
+        "__getstate__": lambda _: None,  # a copy finds out anew what it is
+        _TYPE: cached_property(lambda value: Reference(_tuple_of(value))),
+    }
+    kept = _Named(tuples.__name__, (tuples,), members)
+    _extending.typeof_impl.register(kept)(lambda value, _: getattr(value, _TYPE))
+    return cast(Class, kept)
 
-    def reference_to(value: Any, context: Any) -> Reference:
-        return Reference(_extending.typeof_impl.dispatch(tuple)(value, context))
 
-    _extending.typeof_impl.register(tuples)(reference_to)
-    return tuples
+def _tuple_of(value: Any) -> Any:
+    """Numba's type of a tuple by value."""
+    return _tuples.from_types([_kind_of(field) for field in value], type(value))
+
+
+def _kind_of(value: Any) -> Any:
+    """Numba's type of a value. Of each kind of array Numba is asked once: it answers slowly."""
+    if isinstance(value, np.ndarray):
+        flags = value.flags
+        alike = value.dtype, value.ndim, flags.c_contiguous, flags.f_contiguous, flags.aligned, flags.writeable
+        if alike not in _arrays:
+            _arrays[alike] = _typeof(value)
+        return _arrays[alike]
+    if isinstance(value, tuple) and not hasattr(value, _TYPE):
+        return _tuple_of(value)
+    return _typeof(value)
 
 
 class _Pointer(_extending.models.PrimitiveModel):  # type: ignore[misc]

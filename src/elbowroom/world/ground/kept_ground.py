@@ -36,7 +36,7 @@ def kept_ground(
 
 
 def _written(ground: Ground) -> Arrays:
-    return {name: np.asarray(value) for name, value in ground._asdict().items()}
+    return {name: np.asarray(value) for name, value in zip(ground._fields, ground, strict=True)}
 
 
 def _read(arrays: Arrays) -> Ground:

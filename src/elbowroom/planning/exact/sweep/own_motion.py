@@ -64,6 +64,7 @@ class Shown(NamedTuple):
     interval: float  # seconds between them
 
 
+@by_reference
 class Seen(NamedTuple):
     """Key intervals that were looked at, by the content of both their ends, and what feet stood on in them."""
 

@@ -40,6 +40,7 @@ class StrideHull(NamedTuple):
     cell: Floats  # (3,) m/s, m/s, rad/s
 
 
+@by_reference
 class Ground(NamedTuple):
     """What stands on the ground, seen from above."""
 
