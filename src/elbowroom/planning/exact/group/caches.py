@@ -23,7 +23,7 @@ from elbowroom.planning.exact.sweep.motion_bounds import (
 from elbowroom.planning.exact.sweep.node_clearances import NodeClearances, new_node_clearances
 from elbowroom.planning.exact.sweep.own_body_nodes import OwnBodyNodes
 from elbowroom.planning.exact.sweep.own_motion import OwnMotion, parts_of
-from elbowroom.planning.exact.sweep.scratch import KeptScratch
+from elbowroom.planning.exact.sweep.scratch import ScratchShelf
 from elbowroom.planning.model.footing import Underfoot
 
 _CACHED = 5  # times the horizon: as many results of key intervals are remembered
@@ -44,12 +44,7 @@ class Searched(NamedTuple):
     """What the searches of one group have from each other."""
 
     cache: GroupCache
-    scratch: KeptScratch
-
-    @staticmethod
-    def of(cache: GroupCache) -> "Searched":
-        """With room to work on."""
-        return Searched(cache, KeptScratch(cache.group.postures, cache.chain.waist))
+    scratch: ScratchShelf
 
 
 class TrunkCache:
@@ -64,7 +59,7 @@ class TrunkCache:
         model, waist, cache, horizon = self._made_of
         group = model.trunk_set(waist)
         made = _group(group, _new_tables(group, horizon), _new_sweeps(horizon, DofGroup.WAIST))
-        return Searched.of(cache._replace(group=made))
+        return Searched(cache._replace(group=made), group.scratch)
 
 
 class PlanCaches(NamedTuple):
@@ -100,7 +95,10 @@ def new_caches(
     sweeps = {group: _new_sweeps(horizon, group) for group in LOCAL_GROUPS}
     waists = sweeps[DofGroup.WAIST]
     made = {group: _group(sets[group], _new_tables(sets[group], horizon), sweeps[group]) for group in LOCAL_GROUPS}
-    groups = {group: Searched.of(GroupCache(made[group], roots, waists, model.chain)) for group in LOCAL_GROUPS}
+    groups = {
+        group: Searched(GroupCache(made[group], roots, waists, model.chain), sets[group].scratch)
+        for group in LOCAL_GROUPS
+    }
     trunk = TrunkCache(model, sets[DofGroup.WAIST], groups[DofGroup.WAIST].cache, horizon)
     own_nodes = {group: _own_nodes(model, group, sets[group]) for group in CHILDREN}
     rises = new_known_rises(underfoot)
@@ -117,7 +115,9 @@ def with_set(caches: PlanCaches, model: UpperBodyModel, group: DofGroup, made: P
     if group in own_nodes:
         own_nodes[group] = _own_nodes(model, group, made)
     trunk = TrunkCache(model, made, cache, caches.horizon) if group is DofGroup.WAIST else caches.trunk
-    return caches._replace(groups={**caches.groups, group: Searched.of(cache)}, trunk=trunk, own_nodes=own_nodes)
+    return caches._replace(
+        groups={**caches.groups, group: Searched(cache, made.scratch)}, trunk=trunk, own_nodes=own_nodes
+    )
 
 
 def _group(made: PostureSet, tables: NodeClearances, sweeps: LimbSweeps) -> Group:

@@ -22,6 +22,7 @@ from elbowroom.planning.exact.settings import ExactSettings
 from elbowroom.planning.exact.sweep.motion_bounds import KinematicChain, chain_of
 from elbowroom.planning.exact.sweep.own_body import OwnBody
 from elbowroom.planning.exact.sweep.own_motion import OwnParts, own_parts
+from elbowroom.planning.exact.sweep.scratch import ScratchShelf
 from elbowroom.planning.goal import GoalFunction, natural_walk
 from elbowroom.planning.model.levers import body_levers, levers_of
 from elbowroom.planning.model.limb import Limb, limb_of, pose, trunk_limb
@@ -44,6 +45,7 @@ class PostureSet(NamedTuple):
     speed: float  # the greatest over all components together, rad/s, and
     acceleration: float  # rad/s^2
     resting: Bools  # (W,) which postures touch the naturally walking body
+    scratch: ScratchShelf  # of the searches among them
 
 
 @dataclass(frozen=True, eq=False)
@@ -92,7 +94,8 @@ class UpperBodyModel:
         if group in CHILDREN:
             resting = self.own_body.resting(group, postures)
         speed, acceleration = settings.speed_of(group), settings.acceleration_of(group)
-        return PostureSet(postures, levers_of(self.body, limb), limits(group), speed, acceleration, resting)
+        scratch = ScratchShelf(postures, self.chain.waist)
+        return PostureSet(postures, levers_of(self.body, limb), limits(group), speed, acceleration, resting, scratch)
 
     def trunk_set(self, waist: PostureSet) -> PostureSet:
         """The same postures of the waist, in the same order, with all that follows it as one limb."""
@@ -105,9 +108,9 @@ class UpperBodyModel:
     def _trunk_set(self, waist: PostureSet) -> PostureSet:
         known = waist.postures
         postures = postures_of(self.trunk, known.configurations, known.step, ordered=True)
-        return waist._replace(
-            postures=postures._replace(reach=self.trunk_reach), levers=levers_of(self.body, self.trunk)
-        )
+        postures = postures._replace(reach=self.trunk_reach)
+        scratch = ScratchShelf(postures, self.chain.waist)
+        return waist._replace(postures=postures, levers=levers_of(self.body, self.trunk), scratch=scratch)
 
 
 _MODELS: Shared[UpperBodyModel] = Shared()

@@ -49,7 +49,8 @@ class EvidenceLog:
         self.go_on()
         began, horizon, (cache, scratch) = perf_counter_ns(), len(task.goals) - 1, searched
         edges = closed or new_closed_edges(horizon, cache.group.postures.moves.shape[1] + EXTRA)
-        path, edges = search_group(scratch.past(span_of(task.obstacles, 0)), cache, task, self._weights, edges)
+        with scratch.taken(span_of(task.obstacles, 0)) as room:
+            path, edges = search_group(room, cache, task, self._weights, edges)
         spent = perf_counter_ns() - began
         status = PlanStatus.FOUND if path.reached == horizon else PlanStatus.EXHAUSTED
         self._rows.append(GroupEvidence(group, status, path.checks, path.nodes, 0, spent))

@@ -397,8 +397,8 @@ class UpperBodySearch:
             carriers = caches.group(DofGroup.WAIST).sweeps
             places, turns = carriers.places[waist.entries[0]], carriers.turns[waist.entries[0]]
         postures, obstacles = caches.group(group).postures, span_of(self.problem.near.spans, 0)
-        scratch = caches.groups[group].scratch.past(obstacles)
-        clearance, _ = held_clearance(scratch, postures, task.start, places, turns, obstacles, HELD_AT_START)
+        with caches.groups[group].scratch.taken(obstacles) as scratch:
+            clearance, _ = held_clearance(scratch, postures, task.start, places, turns, obstacles, HELD_AT_START)
         return max(0.5 * clearance, 0.0)
 
     def _search(self, extra: Floats32, follow: Guide | None, *, trunk: bool) -> _WaistPath:

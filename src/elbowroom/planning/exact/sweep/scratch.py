@@ -1,5 +1,7 @@
 """What the kernels of a search work on, kept for the next: the smaller the work, the dearer new arrays are."""
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from typing import NamedTuple
 
 import numpy as np
@@ -85,19 +87,27 @@ def new_scratch(postures: Postures, stem: Limb, obstacles: Nearby, most: int) ->
     )
 
 
-class KeptScratch:
-    """The scratch of one walker's searches among the same postures, which come one after the other."""
+class ScratchShelf:
+    """The scratches of searches among the same postures, whoever makes them: one for each search at a time."""
 
     def __init__(self, postures: Postures, stem: Limb) -> None:
         """`stem`: the waist's limb."""
         self._made_of = postures, stem
-        self._scratch: Scratch | None = None
+        self._free: list[Scratch] = []
 
-    def past(self, obstacles: Nearby) -> Scratch:
-        """Room for a search past no more than these obstacles; made anew where there are more than before."""
-        if self._scratch is None or not has_room_for(self._scratch.near, obstacles):
-            self._scratch = new_scratch(*self._made_of, obstacles, _SPARE * max(number_of(obstacles), _FEW))
-        return self._scratch
+    @contextmanager
+    def taken(self, obstacles: Nearby) -> Iterator[Scratch]:
+        """Room for a search past no more than these obstacles, for nobody else meanwhile."""
+        try:
+            scratch = self._free.pop()
+        except IndexError:  # another thread may have been quicker
+            scratch = None
+        if scratch is None or not has_room_for(scratch.near, obstacles):
+            scratch = new_scratch(*self._made_of, obstacles, _SPARE * max(number_of(obstacles), _FEW))
+        try:
+            yield scratch
+        finally:
+            self._free.append(scratch)
 
 
 @inner_exact_kernel
