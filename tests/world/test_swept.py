@@ -83,3 +83,14 @@ def test_a_sole_that_slopes_as_its_way_does_is_held_where_it_would_lie(yaw: floa
 def test_there_is_none_where_no_foot_stands() -> None:
     ground = Scene.of("step", [{"type": "box", "center": [0, 0.05, 2], "size": [1, 0.1, 1]}], finish=(0.0, 3.0)).ground
     assert np.all(np.isneginf(highest(ground, SOLE, (0.6, 0.0, 0.0, 0.0), (0.6, 0.1, 0.0, 0.0), 30.0, SHARES)))
+
+
+@pytest.mark.parametrize("aside", [0.004, 0.017, 0.035, 0.06])
+def test_a_narrow_sole_that_turns_on_its_way_is_over_ground_all_the_way(aside: float) -> None:
+    """No place that was looked at lay under it: who has narrow soles swung his feet into the treads of a stair."""
+    step = {"type": "box", "center": [0.0, 0.05, 1.6], "size": [3.0, 0.1, 2.0]}
+    ground, sole = Scene.of("step", [step], finish=(0.0, 3.0)).ground, Sole(0.12, 0.24, aside)
+    found = highest(ground, sole, (0.0, 0.0, 0.3, 0.0), (0.05, 1.0, 0.1, 0.0), 0.0, SHARES)
+    assert found[0] == pytest.approx(0.0)
+    assert found[-1] == pytest.approx(0.1)
+    assert np.all(np.diff(found) >= 0.0)

@@ -22,10 +22,10 @@ Lie = tuple[float, float]  # how far a sole is turned from its course, and how i
 Course = tuple[float, float, float]  # the x and z where it begins, and where it leads, as a yaw
 
 _NONE = -math.inf
-_ALONG, _ACROSS = 0.025, 0.07  # metres between places of the grid, at most
+_ALONG, _ACROSS = 0.025, 0.07  # metres between places of the grid, at most; no farther across than half a sole
 _SHORT = 0.01  # metres: who goes no farther turns on the spot
 _UPRIGHT = 1e-6  # radians: a level sole
-_EDGE = 1e-6  # metres by which a place may be beside a sole
+_FINE, _EDGE = 0.005, 1e-6  # metres between places across at least; by which a place may be beside a sole
 
 
 @helper
@@ -101,7 +101,7 @@ def set_highest_under(
         if even > _NONE:
             out[:] = even
             return
-    along, across = _evenly(back, ahead, _ALONG), _evenly(right, left, _ACROSS)
+    along, across = _evenly(back, ahead, _ALONG), _evenly(right, left, min(_ACROSS, max(sole.aside, _FINE)))
     found = np.empty((along.shape[0], across.shape[0]))
     _look(ground, (begin[0], begin[1], course), near, along, across, found)
     for k in range(shares.shape[0]):
