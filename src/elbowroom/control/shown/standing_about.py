@@ -33,7 +33,7 @@ HALVINGS = plain(9)  # of the time between two frames
 OTHERS = 2  # what is no foot
 EVEN = 5e-4  # metres by which what feet stand on may differ and be one height
 _QUICKLY, _FAR = 0.01, 0.1  # metres between two frames: soles of who goes up or down by more, or farther, are looked at
-_OVER_GROUND = 0.004  # metres that feet are held higher where the ground that they stand on is left out
+_OVER_GROUND = 0.0055  # metres that feet are held higher where the ground that they stand on is left out
 
 
 @by_reference
@@ -57,6 +57,21 @@ class ShownLegs(NamedTuple):
 
 
 @inner_exact_kernel
+def _as_deep(level: Floats32, feet: Indices, sides: Indices, radii: Floats32, roots: Floats) -> None:
+    """Lower the `feet` (F,) among capsules (C, 6, N) in strides on the plane, to be held as high as they are on slopes.
+
+    A foot that is as deep in a slope, at right angles to it, is farther below it. `sides` and `radii` (C,) are as in
+    `ShownBody`.
+    """
+    for foot in feet:
+        at = RISES + 2 * sides[foot] + 1
+        for n in range(roots.shape[0] if roots.shape[1] > at else 0):
+            longer = np.float32(1.0 / math.cos(roots[n, at]))
+            for end in range(1, 6, 3):
+                level[foot, end, n] = radii[foot] - longer * (radii[foot] - level[foot, end, n])
+
+
+@inner_exact_kernel
 def hold_feet(body: ShownBody, q: Floats, roots: Floats, axes: Floats32) -> None:
     """Lift the feet among the capsules (C, 6, N) of postures (N, DOF) and root states (N, 7 or more): they are held so.
 
@@ -64,7 +79,9 @@ def hold_feet(body: ShownBody, q: Floats, roots: Floats, axes: Floats32) -> None
     """
     if len(body.feet) == 0:
         return
-    lift_feet(axes, body.feet, posed_capsules(body.whole, q, levelled(roots)), body.feet, body.radii, 0.0)
+    on_plane = posed_capsules(body.whole, q, levelled(roots))
+    _as_deep(on_plane, body.feet, body.sides, body.radii, roots)
+    lift_feet(axes, body.feet, on_plane, body.feet, body.radii, 0.0)
 
 
 @brief_exact_kernel
@@ -93,6 +110,7 @@ def room_along(legs: ShownLegs, standing: Standing, roots: Floats, lowering: flo
     axes = posed_legs(legs.posed, near, lowerings)
     if len(legs.feet) > 0:
         on_plane = posed_legs(legs.posed, levelled(near), lowerings)
+        _as_deep(on_plane, legs.feet, legs.sides, legs.radii, near)
         lift_feet(axes, legs.feet, on_plane, legs.feet, legs.radii, _OVER_GROUND)
         floors[:2] = floors_under(roots)
         floors[OTHERS] = min(floors[0], floors[1])
@@ -145,6 +163,7 @@ def _on_plane(body: ShownBody, frames: FramePair, uppers: Both) -> Floats32:
         for n in range(2):
             q[n, DOF - LOCAL :] = uppers[n]
         level = posed_capsules(body.whole, q, levelled(frames.roots))
+        _as_deep(level, body.feet, body.sides, body.radii, frames.roots)
         for f in range(len(heights)):
             for end in range(2):
                 for n in range(2):

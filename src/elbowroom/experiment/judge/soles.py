@@ -1,9 +1,10 @@
 """What counts as the ground under the feet: how much of a foot may be in what it stands on.
 
 In a walk on level ground a foot is on it, and a little of what stands for it is in it: of the capsule, which is larger
-than the foot, and of the mesh where a heel strikes. Where feet stand on obstacles the same is allowed, and 3 mm more,
-straight up: at each moment feet and toes are held against what stands as much higher as they are below level ground in
-the same stride there. So raised they must be free, like everything else; only the soles may be in what they stand on.
+than the foot, and of the mesh where a heel strikes. Where feet stand on obstacles the same is allowed, and 3 mm more:
+at each moment feet and toes are held against what stands as much higher as they are below level ground in the same
+stride there; on a slope, at right angles to that. So raised they must be free, like everything else; only the soles may
+be in what they stand on.
 """
 
 from dataclasses import replace
@@ -33,6 +34,8 @@ class Soles:
         self._feet = [
             [skeleton.index(side + part) for part in ("Foot", "Toes") if skeleton.has(side + part)] for side in _SIDES
         ]
+        told = motion.roots[:, RISES + 1 : ROOT_STATE : 2]  # how the ground under both feet slopes
+        self._slopes = np.abs(told) if told.shape[1] == len(_SIDES) else np.zeros((len(motion), len(_SIDES)))
         self._level: ShownMotion | None = None  # the same strides on the plane; None where nothing but it is stood on
         if floors or np.abs(motion.roots[:, HEIGHT:ROOT_STATE]).max(initial=0.0) > 0.0:
             roots = motion.roots.copy()
@@ -44,9 +47,10 @@ class Soles:
         if self._level is None:
             return posed
         level, positions = self._poser.at(self._level, moments), posed.positions.copy()
-        for joints in self._feet:
+        slopes = np.minimum(self._slopes[moments.first], self._slopes[moments.second])
+        for joints, slope in zip(self._feet, slopes.T, strict=True):
             lowest = self._capsules_over(level, joints) if skin is None else _skin_over(level, skin, joints)
-            positions[:, joints, 1] += (IN_GROUND + np.maximum(-lowest, 0.0))[:, None]
+            positions[:, joints, 1] += (IN_GROUND + np.maximum(-lowest, 0.0) / np.cos(slope))[:, None]
         return Posed(positions, posed.rotations)
 
     def _capsules_over(self, posed: Posed, joints: list[int]) -> Floats:
