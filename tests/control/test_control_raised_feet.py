@@ -5,6 +5,7 @@ import pytest
 from numpy.typing import NDArray
 
 from elbowroom.body.dof import LOCAL
+from elbowroom.body.gait.foot_state import standing
 from elbowroom.body.gait.footholds import UNKNOWN
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.pose.kinematics import body_model
@@ -19,6 +20,7 @@ from elbowroom.control.key_frame_queue import Playback
 from elbowroom.control.plans.canned import standing_posture
 from elbowroom.world.ground.ground import PLAIN
 from elbowroom.world.scene import Scene
+from feet_walks import in_world
 
 Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
@@ -125,3 +127,18 @@ def test_no_way_is_told_twice(room: float) -> None:
     for ways in (list(feet.settling(moment, posed)), [way for way, _ in feet.under(moment, [(posed, np.zeros(3))])]):
         assert len(ways) > 1
         assert len({way.root.tobytes() + way.upper.tobytes() for way in ways}) == len(ways)
+
+
+@pytest.mark.parametrize("room", [-0.02, 0.0, 0.0039])
+def test_a_foot_that_stands_does_not_glide_where_legs_would_be_no_clearer(room: float) -> None:
+    """Legs that come a tenth of a millimetre too near, whatever feet do: they slid by centimetres, and no more room."""
+    feet, planned = Stepping(HUMANOID, STOCK, AboveSoles(body_model(HUMANOID), PLAIN)), before(0.0)
+    shown, near = Playback(feet.standing(planned), UPPER, UPPER), Around(0.05, lasts=True)
+    moment = Moment(shown, UPPER, DT, UNKNOWN, -1.0, lambda *_: near, lambda *_: room, lambda *_: 0.05)
+    planned[3], planned[6] = 0.8, 0.2
+    way = feet.next(moment, Playback(planned, UPPER, UPPER)).root
+    stands = standing(way)
+    assert stands.any()
+    for side in np.flatnonzero(stands).tolist():
+        moved = in_world(way[None], side) - in_world(shown.root[None], side)
+        assert np.abs(moved).max() < 1e-9

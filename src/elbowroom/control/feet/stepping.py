@@ -5,7 +5,7 @@ chest and head live (`body/gait/living.py`) as far as there is room, and are whe
 none.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from itertools import islice
 
 import numpy as np
@@ -37,6 +37,7 @@ Floats = NDArray[np.float64]
 _ROOM = 0.10  # metres about the legs in which feet step as they like
 _ASKED = 0.01  # metres: more room about legs is not told apart
 CLEAR = 0.004  # metres about the legs that have to stay, where there are less, as far ahead as is known
+_NO_CLEARER = 0.0005  # metres: feet that stand do not glide to have so much more about legs
 _FORESEEN = 0.75  # seconds that are looked ahead
 _FOLDED = 0.02  # metres from trunk to thighs, beyond what they may come near: with more it is not looked ahead
 _SAME = 1e-9  # metres and radians
@@ -107,10 +108,12 @@ class Stepping:
     def _next(self, it: Posing) -> Playback:
         moment, posed, after = it.moment, it.posed, it.made(STEPS)
         around = moment.look(after.root, posed.upper, after.axes)
-        if around.room < _ROOM and not (around.lasts and self._stays_clear(moment, after.root, posed.upper)):
-            after = self._glided(it, lasts=around.lasts)
-        if after.trunk < _FOLDED and self._comes_into_trunk(moment, after.root, posed.upper):
+        if around.room < _ROOM and not around.lasts:
             after = it.made(GLIDES)
+        elif around.room < _ROOM:
+            after = self._clearest(it, lambda rows: moment.room_along(rows, posed.upper, _ASKED))
+        if after.trunk < _FOLDED and after is it.made(STEPS):
+            after = self._clearest(it, lambda rows: self._trunk.room(rows, posed.upper))
         upper = self._arms.apart(after.root, posed.upper, after.gaps)
         if moment.shown.upper is not moment.meant:
             upper = self._arms.coming_back(upper, posed.upper, moment.shown.upper - moment.meant, moment.dt)
@@ -173,8 +176,9 @@ class Stepping:
         still = alive.on_planned_hips
         if still is not alive:
             yield self._next(still)
-        glides, posed = still.made(GLIDES), still.posed
-        yield posed._replace(root=glides.root, upper=self._arms.apart(glides.root, posed.upper, glides.gaps))
+        for how in (HOLDS, GLIDES):
+            made, posed = still.made(how), still.posed
+            yield posed._replace(root=made.root, upper=self._arms.apart(made.root, posed.upper, made.gaps))
 
     def _off_things(self, moment: Moment, ways: Iterator[Playback]) -> Iterator[Playback]:
         """The same ways: where one comes so near to what stands that its skin could touch, others that do not first.
@@ -244,37 +248,32 @@ class Stepping:
         stood: Floats = self._footing.stood(root[None, :ROOT_STATE])[0][0]
         return stood
 
-    def _comes_into_trunk(self, moment: Moment, root: Floats, upper: Floats) -> bool:
-        """Whether a thigh on feet that step on from `root` comes too near to the trunk, as far ahead as is known."""
-        rows = steps_ahead(self._gait, root[:WITH_FEET], moment.ahead, _FORESEEN, self._own, self._follower.under)
-        return self._trunk.room(rows, upper) < CLEAR
-
-    def _stays_clear(self, moment: Moment, root: Floats, upper: Floats) -> bool:
-        """Whether legs on feet that step on from `root` stay clear of what is near, as far ahead as is known."""
-        under = self._follower.under
-        rows = steps_ahead(self._gait, root[:WITH_FEET], moment.ahead, _FORESEEN, self._own, under)
-        return moment.room_along(rows, upper, _ASKED) >= CLEAR
-
     def _is_clear(self, moment: Moment, after: Followed, posed: Playback) -> bool:
         """Whether legs are clear of what is near, but for the ground under them, where that is not plain."""
         legs = after.root[None, :WITH_FEET]
         return not self._footing.plain and moment.room_along(legs, posed.upper, _ASKED) >= CLEAR
 
-    def _glided(self, it: Posing, *, lasts: bool) -> Followed:
-        """A pose on feet that glide, but for the one that stands, as long as the legs are clear on it.
+    def _clearest(self, it: Posing, room: Callable[[Floats], float]) -> Followed:
+        """A pose on feet that step, if legs stay clear as they step on, by the `room` along root states (N, WITH_FEET).
 
-        And as long as they could glide from there: planned feet are proven free, those that stay behind them are not.
+        Else on feet that glide, but for the one that stands, as long as legs would stay clear if it went on from there:
+        planned feet are proven free, those that stay behind them are not. Where nothing is as clear as that, a foot
+        that stands glides only if that keeps off more.
         """
-        moment, posed = it.moment, it.posed
-        if lasts:
-            held = it.made(HOLDS)
-            near = moment.look(held.root, posed.upper, held.axes).room
-            if near >= CLEAR or self._is_clear(moment, held, posed):
-                under = self._follower.under
-                back = glides_ahead(self._gait, held.root[:WITH_FEET], moment.ahead, _FORESEEN, under)
-                if moment.room_along(back, posed.upper, _ASKED) >= CLEAR:
-                    return held
-        return it.made(GLIDES)
+        ahead, under = it.moment.ahead, self._follower.under
+        steps = it.made(STEPS)
+        on_steps = room(steps_ahead(self._gait, steps.root[:WITH_FEET], ahead, _FORESEEN, self._own, under))
+        if on_steps >= CLEAR:
+            return steps
+        held, glides = it.made(HOLDS), it.made(GLIDES)
+        on_held, on_glides = (
+            room(glides_ahead(self._gait, each.root[:WITH_FEET], ahead, _FORESEEN, under)) for each in (held, glides)
+        )
+        if on_held >= CLEAR:
+            return held
+        if on_steps >= on_glides - _NO_CLEARER and on_steps >= on_held:
+            return steps
+        return held if on_held >= max(on_glides - _NO_CLEARER, 0.0) else glides
 
     def _followed(self, moment: Moment, posed: Playback, how: int) -> Followed:
         """A pose on feet that follow in one of the ways, with hips, chest and head that live."""
