@@ -1,7 +1,8 @@
 """Where feet that step land where ground is not a plane: on a tread and not across its edge, above it or below.
 
 A foot that would land across an edge, or on a heel behind a ridge with nothing under it, lands a little farther ahead
-or back: there it would slide as it turns about that heel. How much lower than the other foot it does tells `footholds`
+or back: there it would slide as it turns about that heel, or about a ball in the air. Where no tread is long enough for
+it, as little of it as can be is in the air. How much lower than the other foot it does tells `footholds`
 when it has to be over its place.
 """
 
@@ -26,6 +27,7 @@ Lie = tuple[float, float]  # height and slope of what a foot stands on or swings
 NO_GROUND = -math.inf  # the height of no ground
 _AIR, _SHIFT, _TRIED = 0.02, 0.015, 8  # metres under ankle and ball; metres by which a foot lands elsewhere, so often
 _LEVEL, _HOLLOW = 0.02, 0.006  # radians: less is level; metres under a heel
+_PLACES = 8  # from ankle to ball
 _BALL, _HEEL = 6, 7  # columns of `GaitShape.legs`
 
 
@@ -57,24 +59,40 @@ def _bears(under: Underfoot, row: Floats, foot: Place, ball: float, heel: float)
     return lies > NO_GROUND and stands, lies > NO_GROUND and lies - front < _AIR, (lies, slope)
 
 
+@helper
+def _in_air(under: Underfoot, row: Floats, foot: Place, ball: float, lie: Lie) -> int:
+    """How many places from ankle to ball have no ground under them, of a foot at a place that lies so there."""
+    count = 0
+    for k in range(_PLACES + 1):
+        ahead = ball * k / _PLACES
+        x, z = in_world(row, foot[0] + ahead * math.sin(foot[2]), foot[1] + ahead * math.cos(foot[2]))
+        air = lie[0] - ahead * math.tan(lie[1]) - height_at(under.ground, x, z, lie[0])
+        count += 1 if air >= _AIR else 0
+    return count
+
+
 @inner_exact_kernel
 def _farther_onto(under: Underfoot, who: Stepper, row: Floats, side: int, goal: Place) -> tuple[float, Lie]:
     """How much farther ahead a foot has to land so that it stands on a tread and not across its edge, metres.
 
     As little as possible. Where that is not had within a few centimetres it stands on its ball, over which it rolls;
-    0 where it does not do so either. And how it lies there.
+    where it does not do so either, as little of it as can be is in the air. And how it lies there.
     """
     ball, heel, scale = who.legs[side, _BALL], who.legs[side, _HEEL], who.scale
-    onto_ball, lie = math.inf, (NO_GROUND, 0.0)
+    onto_ball, lie, fewest, least, lies = math.inf, (NO_GROUND, 0.0), _PLACES + 2, 0.0, (NO_GROUND, 0.0)
     for k in range(2 * _TRIED + 1):
         ahead = _SHIFT * scale * ((k + 1) // 2) * (1.0 if k % 2 == 0 else -1.0)
-        x, z = goal[0] + ahead * math.sin(goal[2]), goal[1] + ahead * math.cos(goal[2])
-        back, front, there = _bears(under, row, (x, z, goal[2]), ball, heel)
+        place = goal[0] + ahead * math.sin(goal[2]), goal[1] + ahead * math.cos(goal[2]), goal[2]
+        back, front, there = _bears(under, row, place, ball, heel)
         if back and front:
             return float(ahead), there
-        if (front and onto_ball == math.inf) or k == 0:
-            onto_ball, lie = float(ahead) if front else math.inf, there
-    return onto_ball if onto_ball < math.inf else 0.0, lie
+        if front and onto_ball == math.inf:
+            onto_ball, lie = float(ahead), there
+        if onto_ball == math.inf and there[0] > NO_GROUND:
+            count = _in_air(under, row, place, ball, there)
+            if count < fewest:
+                fewest, least, lies = count, float(ahead), there
+    return (onto_ball, lie) if onto_ball < math.inf else (least, lies)
 
 
 @helper
