@@ -23,8 +23,7 @@ class ExactSettings:
     spare: float = 0.45  # seconds beyond the look-ahead, or within it on a way aside, in which a plan is kept
     revisited: float = 1.2  # seconds at the end of a plan that are searched anew with that; the rest is kept
     comfort: float = 0.05  # postures with less clearance cost more
-    quick_rounds: int = 12  # motions that may turn out to touch before a group gives up at first sight
-    rounds: int = 16  # motions that may turn out to touch before a group gives up
+    rounds: int = 18  # motions that may turn out to touch before a group gives up
     guided_rounds: int = 4  # answers of the joint step that may turn out to touch
     self_rounds: int = 6  # motions that may turn out to run into the body itself
     step_weight: float = 1.5  # of changing the distance from the goal, against that distance itself

@@ -52,7 +52,6 @@ class UpperBodyPlanner:
         self._weights = Weights(
             settings.step_weight, settings.near_weight, settings.comfort, settings.keeping, settings.rounds
         )
-        self._quick_weights = self._weights._replace(rounds=settings.quick_rounds)
         self._refinement = RefinementSettings()
         body = body_model(humanoid)
         self._legs = LoweredLegs(body, scene.obstacles, scene.ground)
@@ -90,14 +89,14 @@ class UpperBodyPlanner:
         near = self._near(path, others)
         legs = self._legs.among(others, path)
         quick, again = effort in (Effort.GLANCE, Effort.QUICK), effort is not Effort.GLANCE
-        rounds, weights = (0, self._quick_weights) if quick else (self.settings.guided_rounds, self._weights)
-        search = after or self._search_of(path, begins, previous, near, legs, weights, go_on)
+        rounds = 0 if quick else self.settings.guided_rounds
+        search = after or self._search_of(path, begins, previous, near, legs, go_on)
         if after is not None:
             ways, stamps = after.caches.roots, after.problem.near.stamps
             after.go_on_with(root_sweeps(ways, self.model.chain, after.path.states, path.interval, stamps))
         found = None if after is not None else search.motion(rounds, again=again)
         if found is None and effort is Effort.REFINED and not search.spent and self._refine(search):
-            before, search = search, self._search_of(path, begins, previous, near, legs, weights, go_on)
+            before, search = search, self._search_of(path, begins, previous, near, legs, go_on)
             if after is None:
                 search.evidence_log.begin_after(before.evidence_log)
             found = search.motion(rounds)
@@ -124,7 +123,6 @@ class UpperBodyPlanner:
         previous: PreviousPlan | None,
         near: Along,
         legs: LoweredLegs,
-        weights: Weights,
         go_on: GoOn,
     ) -> UpperBodySearch:
         caches = self.memory.begin(path.horizon)
@@ -133,7 +131,7 @@ class UpperBodyPlanner:
         walk = self.model.goals(path)
         goals = goals_where_narrow(self._narrow, path, walk) if any_in(near.spans) else walk
         problem = PathProblem.of(path, walk, goals, previous, begins, roots, near, margins)
-        return UpperBodySearch(caches, weights, self.model, legs, problem, go_on)
+        return UpperBodySearch(caches, self._weights, self.model, legs, problem, go_on)
 
     def _required(self, path: RootPath, ahead: int) -> RequiredMargins:
         """The margins of nodes and motion along a path that begins so many key intervals ahead."""
