@@ -48,6 +48,7 @@ from elbowroom.planning.narrow.goals import goals_where_narrow
 from elbowroom.planning.narrow.places import NarrowPlaces
 from elbowroom.planning.navigation.navigator import Navigator
 from elbowroom.planning.root.line.line import new_line
+from elbowroom.planning.root.motion import go_as
 from elbowroom.planning.root.path import RootPath
 from elbowroom.planning.root.plan import RootPlan
 from elbowroom.planning.root.planner import RootPlanner
@@ -114,7 +115,7 @@ def rehearse_own_body(humanoid: Humanoid) -> None:
 
 
 def rehearse_detour(humanoid: Humanoid) -> RootPlan:
-    """Plan root paths round a low box, aside of it, to a stand, with others about, and turning on the spot."""
+    """Plan root paths round a low box, aside of it, to a stand, with others about, on the spot; go on as told."""
     planner = RootPlanner(humanoid, _scene_with(*_LOW))
     start, horizon = RootState(0.0, 0.0, 0.0), 2 * _HORIZON
     for command in (Command(turn=1.0), Command()):
@@ -123,7 +124,9 @@ def rehearse_detour(humanoid: Humanoid) -> RootPlan:
     planner.others = Scene.load("traffic").obstacles.moving
     list(planner.candidates(Asked(start, Command(forward=1.0), horizon, _INTERVAL)))
     planner.others = Moving()
-    return planner.plan(Asked(start, Command(forward=1.0), horizon, _INTERVAL))
+    plan = planner.plan(Asked(start, Command(forward=1.0), horizon, _INTERVAL))
+    go_as(plan.path.states.copy(), plan.path.states, _INTERVAL, planner.bounds)
+    return plan
 
 
 def rehearse_crouch(humanoid: Humanoid) -> None:

@@ -152,6 +152,20 @@ def steer(states: Floats, wanted: Floats, interval: float, bounds: MotionBounds)
         limited_step(states, k, vx, vz, wanted[2], interval, bounds)
 
 
+@exact_kernel
+def go_as(states: Floats, told: Floats, interval: float, bounds: MotionBounds) -> None:
+    """Fill the states with steps that reach the velocities of those `told` (n+1, 7), whatever lies between.
+
+    Seen from other key times than its own the velocities of a path bend between them, and its accelerations are those
+    of both sides together; steps that reach the same velocities keep the bounds, and end about where the path does.
+    """
+    for k in range(states.shape[0] - 1):
+        goal = told[k + 1]
+        sine, cosine = np.sin(goal[2]), np.cos(goal[2])
+        vx, vz = goal[3] * sine + goal[4] * cosine, goal[3] * cosine - goal[4] * sine
+        limited_step(states, k, vx, vz, goal[5], interval, bounds)
+
+
 @helper
 def _aim(route: Floats, x: float, z: float, look_ahead: float) -> tuple[float, float, float]:
     """The point `look_ahead` metres along the route after the point nearest to (x, z), and what is left of it."""

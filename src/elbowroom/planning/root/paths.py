@@ -274,6 +274,10 @@ class RootPaths:
         query = self._query(asked)
         return np.stack([query.short_step(wanted, moving) for wanted in velocities])
 
+    def going_as(self, asked: Asked, told: Floats) -> Floats:
+        """States (n+1, 7) from the start on, free or not, that reach the velocities of those `told` (n+1, 7)."""
+        return self._query(asked).going_as(told)
+
     def is_free(self, asked: Asked, states: Floats) -> bool:
         """Whether legs and pelvis are free along a path (n+1, 7) from the start, and could stop on the way."""
         return self.kept(asked, states) == len(states) - 1

@@ -319,7 +319,8 @@ class _OfferMaker:
 
     def _left_of(self, way_out: WayOut | None, asked: Asked) -> RootPlan | None:
         """What is left of a way out that is being followed, if it is still free."""
-        states = None if way_out is None or self._paths.restless else way_out.left(asked)
+        left = None if way_out is None or self._paths.restless else way_out.left(asked)
+        states = None if left is None else self._paths.going_as(asked, left)
         if states is None or not self._paths.is_free(asked, states):
             return None
         path, (x, z) = RootPath(asked.start_time, asked.interval, states), states[-1, :2].tolist()

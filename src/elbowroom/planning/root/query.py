@@ -18,7 +18,7 @@ from elbowroom.planning.root.legs.neighbours import Neighbours
 from elbowroom.planning.root.line.ahead import NONE_TIGHT, Route, RouteFinder
 from elbowroom.planning.root.line.line import TravelLine
 from elbowroom.planning.root.line.way_ahead import WayAhead
-from elbowroom.planning.root.motion import NONE_SLOW, Travel, brake, follow, gets_nowhere, steer
+from elbowroom.planning.root.motion import NONE_SLOW, Travel, brake, follow, gets_nowhere, go_as, steer
 from elbowroom.planning.root.plan import RootPlanKind, RootPlannerSettings
 from elbowroom.planning.stillness import is_still
 
@@ -164,6 +164,12 @@ class RootQuery:
         steer(states[: moving + 1], wanted, self.interval, self.bounds)
         if moving < self.horizon:
             brake(states, moving, self.interval, self.bounds)
+        return states
+
+    def going_as(self, told: Floats) -> Floats:
+        """States (n+1, 7) from the start on that reach the velocities of those `told` (n+1, 7)."""
+        states = self._blank()
+        go_as(states, told, self.interval, self.bounds)
         return states
 
     def kept(self, states: Floats) -> int:

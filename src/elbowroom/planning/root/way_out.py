@@ -61,7 +61,7 @@ class WayOut(NamedTuple):
     tries: int  # ways out that have been taken from about there
 
     def left(self, asked: Asked) -> Floats | None:
-        """The states (n+1, 7) that are left for who is on its steps; None for who is not, or comes by later."""
+        """Its states (n+1, 7) at the key times from now on, for who is on its steps; None for who is not, or later."""
         if asked.start_time - self.path.start_time > _LATE * self.length * self.path.interval:
             return None
         moments = self.path.start_time + self.path.interval * np.arange(0.0, self.length, 0.25)
@@ -69,10 +69,7 @@ class WayOut(NamedTuple):
         nearest = int(apart.argmin())
         if apart[nearest] > _ASTRAY:
             return None
-        states = self.path.sample(moments[nearest] + asked.interval * np.arange(asked.horizon + 1.0))
-        states[:, 6] += asked.start.phase - states[0, 6]
-        states[0] = asked.start.as_array()
-        return states
+        return self.path.sample(moments[nearest] + asked.interval * np.arange(asked.horizon + 1.0))
 
 
 class _Place(NamedTuple):
