@@ -24,7 +24,7 @@ from elbowroom.planning.root.path import RootPath
 from elbowroom.world.obstacles.clearance import clearance
 from elbowroom.world.obstacles.layout import Nearby
 from elbowroom.world.obstacles.obstacles import Obstacles
-from elbowroom.world.obstacles.rows import count_of, span_of
+from elbowroom.world.obstacles.rows import number_of, span_of
 from elbowroom.world.scene import Scene
 
 Floats = NDArray[np.float64]
@@ -219,7 +219,7 @@ def test_hardly_anything_is_asked_of_what_closes_nothing(humanoid: Humanoid, mon
     search, asked, closed_by = dressed(humanoid, scene_of(BRICKS), walk(10)), list[int](), SliceNodes.closed_by
 
     def counted(nodes: SliceNodes, obstacles: Nearby) -> Closed:
-        asked.append(count_of(obstacles))
+        asked.append(number_of(obstacles))
         return closed_by(nodes, obstacles)
 
     monkeypatch.setattr(SliceNodes, "closed_by", counted)

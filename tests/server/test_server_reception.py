@@ -2,6 +2,7 @@
 
 import asyncio
 from collections.abc import Iterator, Sequence
+from functools import partial
 
 import pytest
 from starlette.applications import Starlette
@@ -22,6 +23,7 @@ LARGE, WRONG, LEFT = b"x" * 2000, b"", None  # how a sender ends: it sends too m
 def app(monkeypatch: pytest.MonkeyPatch) -> Iterator[Starlette]:
     for room, most in ((reception, "MAX_UPLOAD"), (scene_desk, "MAX_SCENE")):
         monkeypatch.setattr(room, most, 1000)
+    monkeypatch.setattr(reception, "Pace", partial(reception.Pace, pause=600.0, grace=600.0))  # however busy this is
     library = Library.open("b")
     yield make_app(library)
     library.close()

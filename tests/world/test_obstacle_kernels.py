@@ -15,7 +15,7 @@ from elbowroom.geometry import quaternion
 from elbowroom.world.obstacles.clearance import clearance, clearance_of, pairwise_clearance
 from elbowroom.world.obstacles.closest_points import closest_points
 from elbowroom.world.obstacles.obstacles import Obstacles
-from elbowroom.world.obstacles.rows import count_of, joined, one_of
+from elbowroom.world.obstacles.rows import joined, number_of, one_of
 from elbowroom.world.obstacles.shapes import Box, Capsule, Cylinder, Shape, Sphere
 from judged_bodies import scene_with
 from sampled import sampled
@@ -160,7 +160,7 @@ def test_all_shapes_together_are_the_least_of_each() -> None:
     pairs = pairwise_clearance(segments, radii, obstacles.standing)
     np.testing.assert_array_equal(clearance(segments, radii, obstacles.standing), pairs.min(axis=(0, 1)))
     standing = obstacles.standing
-    singles = np.array([clearance(segments, radii, one_of(standing, b)) for b in range(count_of(standing))])
+    singles = np.array([clearance(segments, radii, one_of(standing, b)) for b in range(number_of(standing))])
     np.testing.assert_array_equal(clearance(segments, radii, obstacles.standing), singles.min(axis=0))
     for i in range(0, 530, 41):
         assert clearance_of(segments[:, :, i], radii, obstacles.standing) == pairs[:, :, i].min()

@@ -48,11 +48,6 @@ def numbered(near: Nearby, numbers: Longs) -> Nearby:
     return Nearby(near.rows[numbers], near.packed)
 
 
-def count_of(near: Nearby) -> int:
-    """The number of obstacles."""
-    return len(near.rows)
-
-
 def spans_of(spans: Spans, numbers: Longs) -> Spans:
     """The spans of these numbers (N,)."""
     return Spans(spans.rows[numbers], spans.packed)
@@ -70,7 +65,8 @@ def number_of(near: Nearby) -> int:
 
 def has_room_for(room: Nearby, near: Nearby) -> bool:
     """Whether a room was made for obstacles with the shapes that these have, and for as many."""
-    return len(near.rows) <= len(room.rows) and near.packed is room.packed
+    alike = near.packed is room.packed or not (len(near.packed) or len(room.packed))
+    return alike and len(near.rows) <= len(room.rows)
 
 
 def any_in(spans: Spans) -> bool:

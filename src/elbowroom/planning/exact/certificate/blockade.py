@@ -15,7 +15,7 @@ from elbowroom.planning.exact.joint.reachability import next_triples, reach
 from elbowroom.planning.exact.joint.step import PRODUCT, JointStep, a_few
 from elbowroom.planning.result import Blockade, BlockadeKind
 from elbowroom.planning.root.path import RootPath
-from elbowroom.world.obstacles.rows import count_of, numbered, span_of
+from elbowroom.world.obstacles.rows import number_of, numbered, span_of
 
 Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
@@ -84,7 +84,7 @@ def _named(step: JointStep, depth: int, candidates: Bools) -> Indices | None:
         together = SliceNodes(step, depth, waists).closed_by(near)
         if blocking_obstacles(contacts_of(candidates & waists[:, None, None], [together])) is None:
             return None
-    nodes, halves = SliceNodes(step, depth, used), [np.arange(count_of(near))]
+    nodes, halves = SliceNodes(step, depth, used), [np.arange(number_of(near))]
     numbers, closing = list[int](), list[Closed]()
     while halves:
         some = halves.pop()
