@@ -36,8 +36,8 @@ def _differs(frame: bytes, other: bytes) -> bool:
     if len(frame) != len(other) or _told(frame) != _told(other):
         return True
     numbers, others = (np.frombuffer(one, "<f4", offset=_AT["x"]) for one in (frame, other))
-    with np.errstate(invalid="ignore"):  # without an obstacle the clearance is infinite in both
-        return bool(np.abs(numbers - others).max() > UNSEEN)
+    with np.errstate(invalid="ignore"):  # without an obstacle the clearance is infinite in both: no number, no more
+        return bool((np.abs(numbers - others) > UNSEEN).any())
 
 
 def _told(frame: bytes) -> bytes:
