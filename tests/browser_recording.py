@@ -16,5 +16,5 @@ def record_walk(file: Path, steps: int) -> Path:
     controller, ahead = Controller(Humanoid.default(), Scene.load("doorway"), assist=False), Command(forward=1.0)
     with Recorder(file, controller) as recorder:
         for _ in range(steps):
-            recorder.append(ahead, _STEP, controller.step(ahead, _STEP), assist=False)
+            recorder.append(controller.step(ahead, _STEP), _STEP)
     return file

@@ -313,7 +313,7 @@ def recording_reader() -> Reader:
     controller = Controller(proportional_humanoid(1.72), Scene.load("empty"))
     with Recorder(file, controller) as recorder:
         for _ in range(5):
-            recorder.append(Command(), 0.01, controller.step(Command(), 0.01))
+            recorder.append(controller.step(Command(), 0.01), 0.01)
     header = len(RecordingHeader.of(controller).to_json())
 
     def read(data: bytes) -> None:

@@ -46,6 +46,7 @@ def made_recording(path: Path, humanoid: Humanoid, frames: int = 60, *, even: bo
     times = np.cumsum(dt)
     with Recorder(path, Controller(humanoid, Scene.load("empty"))) as recorder:
         for i in range(frames):
-            frame = Frame(times[i], q[i], roots[i], Phase.PLAY, np.inf, False, False, 0, _NO_KEYS, None)
-            recorder.append(Command(forward=1.0), dt[i], frame, restart=i == restart)
+            time = times[i] - (times[restart] if i >= restart else 0.0)
+            told = Phase.PLAY, np.inf, False, False, 0, _NO_KEYS, None, Command(forward=1.0)
+            recorder.append(Frame(time, q[i], roots[i], *told), dt[i])
     return Made(Recording(path), q, roots, times, restart)

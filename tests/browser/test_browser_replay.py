@@ -24,7 +24,7 @@ def recorded_walk(tmp_path_factory: pytest.TempPathFactory) -> Path:
     controller = Controller(Humanoid.default(), Scene.load("doorway"), assist=False)
     with Recorder(file, controller) as recorder:
         for _ in range(120):
-            recorder.append(Command(forward=1.0), 1 / 60, controller.step(Command(forward=1.0), 1 / 60), assist=False)
+            recorder.append(controller.step(Command(forward=1.0), 1 / 60), 1 / 60)
     return file
 
 

@@ -75,7 +75,7 @@ def test_a_recording_of_a_style_is_replayed_to_the_bit(tmp_path: Path) -> None:
         for _ in range(90):
             frame = controller.step(Command(forward=1.0), DT)
             assert frame.clearance >= 0.0
-            recorder.append(Command(forward=1.0), DT, frame)
+            recorder.append(frame, DT)
     recording = Recording(tmp_path / "run.elbow")
     assert recording.header.motions.style == controller.motions.style
     assert replay(recording, humanoid).identical

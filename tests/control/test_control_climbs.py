@@ -156,7 +156,7 @@ def test_a_climb_is_recorded_and_played_again_bit_for_bit(tmp_path: Path) -> Non
     controller = Controller(AVATAR, scene)
     with Recorder(file, controller) as recorder:
         while not scene.finished(controller.root):
-            recorder.append(FORWARD, FRAME, controller.step(FORWARD, FRAME))
+            recorder.append(controller.step(FORWARD, FRAME), FRAME)
     assert replay(Recording(file), AVATAR).identical
 
 

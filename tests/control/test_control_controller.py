@@ -170,6 +170,25 @@ def test_settings_out_of_range_are_plain_errors() -> None:
             Controller(HUMANOID, scene, seed=seed, planner=planner)
 
 
+def test_a_reset_to_where_nobody_can_stand_changes_nothing() -> None:
+    scene = Scene.load("d")
+    controller, start = Controller(HUMANOID, scene), scene.start
+    inside = start._replace(x=float(scene.obstacles.centers[0, 0]), z=float(scene.obstacles.centers[0, 2]))
+    controller.push(1, (-2.0, 1.75))
+    shown = walk(controller, [Command(forward=1.0)] * 30)[-1]
+    things = dict(controller.things)
+    with pytest.raises(InputError, match="touches an obstacle"):
+        controller.reset(inside)
+    assert controller.start == start
+    assert controller.things == things
+    assert controller.step(Command(), 0.0).q.tobytes() == shown.q.tobytes()
+    controller.reset(start._replace(x=start.x + 0.1))
+    assert controller.root.x == pytest.approx(start.x + 0.1)
+    assert not controller.things
+    controller.reset()
+    assert controller.root.x == pytest.approx(start.x + 0.1)
+
+
 def test_a_start_in_an_obstacle_is_a_plain_error() -> None:
     scene = Scene.load("a")
     inside = scene.start._replace(x=float(scene.obstacles.centers[0, 0]), z=float(scene.obstacles.centers[0, 2]))

@@ -82,7 +82,7 @@ def test_what_is_recorded_of_it_replays(humanoid: Humanoid, tmp_path: Path) -> N
         controller.goto((0.5, 4.0))
         for _ in range(300):
             frame = controller.step(Command(), DT)
-            recorder.append(frame.command, DT, frame)
+            recorder.append(frame, DT)
     recording = Recording(path)
     assert replay(recording, humanoid).identical
     assert len(recording.ways) > 1, "the way was not kept"
@@ -103,7 +103,7 @@ def test_it_replays_where_something_has_come_into_the_way(humanoid: Humanoid, tm
             frame = controller.step(Command(), DT)
             assert frame.command.led
             assert not frame.command.may_climb
-            recorder.append(frame.command, DT, frame)
+            recorder.append(frame, DT)
             stuck += frame.stuck
     assert stuck > 1.0 / DT
     assert replay(Recording(path), humanoid).identical

@@ -127,7 +127,7 @@ def test_a_push_is_recorded_played_again_bit_for_bit_and_told_as_a_track(tmp_pat
             if step == 150:
                 walker.let_go()
             command = Command(forward=1.0)
-            recorder.append(command, STEP, walker.step(command, STEP))
+            recorder.append(walker.step(command, STEP), STEP)
             shown.append([*walker.things[0].place] if 0 in walker.things else [2.0, 2.5])
     recording = Recording(path)
     assert replay(recording, Humanoid.default()).identical
@@ -158,7 +158,7 @@ def test_a_run_that_began_anew_after_a_push_is_told_as_one_scene_as_it_was(tmp_p
                 walker.push(step // 100, (0.4, 2.0))
             command = Command(forward=1.0)
             frame = walker.step(command, STEP)
-            recorder.append(command, STEP, frame, restart=anew)
+            recorder.append(frame, STEP)
             shown.append((walker.surroundings.obstacles.moving.poses(frame.time), dict(walker.things), frame))
     recording = Recording(path)
     told_scene, clock = recording.scene(), recording.clock(recording.steps())

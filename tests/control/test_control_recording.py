@@ -54,7 +54,7 @@ def record(path: Path, steps: int = STEPS, scene: str = "empty") -> list[tuple[C
                 command = Command(forward, strafe, turn, direction, run=bool(rng.integers(2)))
             dt = float(rng.uniform(0.0, 0.05))
             frame = controller.step(command, dt)
-            recorder.append(command, dt, frame)
+            recorder.append(frame, dt)
             shown.append((command, dt, frame.q))
     return shown
 
@@ -83,7 +83,7 @@ def test_all_that_a_command_says_is_kept(tmp_path: Path) -> None:
     controller, path = Controller(HUMANOID, Scene.load("empty"), seed=3), tmp_path / "told.elbow"
     with Recorder(path, controller) as recorder:
         for command in (told, Command()):
-            recorder.append(command, 0.0, controller.step(command, 0.0))
+            recorder.append(controller.step(command, 0.0), 0.0)
     recording = Recording(path)
     (first, last), ways = recording.steps(), recording.ways
     assert command_of(first, way := way_from(ways, 0, ())) == told
@@ -231,7 +231,7 @@ def test_steps_are_on_disk_before_the_recorder_is_closed(tmp_path: Path) -> None
     controller = Controller(HUMANOID, Scene.load("empty"))
     recorder = Recorder(path, controller)
     for _ in range(STEPS_PER_CHUNK + 5):
-        recorder.append(Command(), 0.01, controller.step(Command(), 0.01))
+        recorder.append(controller.step(Command(), 0.01), 0.01)
     assert len(Recording(path).steps()) == STEPS_PER_CHUNK
     recorder.close()
     recorder.close()
@@ -319,6 +319,13 @@ def test_a_bomb_is_not_inflated(run: tuple[Path, object], tmp_path: Path) -> Non
         assert recording.note is not None
 
 
+def test_no_more_than_a_day_is_read(run: tuple[Path, object], monkeypatch: pytest.MonkeyPatch) -> None:
+    """Steps in which somebody stands are packed a thousand to one: a small file may hold more than any memory."""
+    monkeypatch.setattr(recordings, "MOST_STEPS", len(Recording(run[0]).steps()) // 4)
+    with pytest.raises(InputError, match="steps of a day"):
+        Recording(run[0]).steps()
+
+
 def test_the_step_record_is_fixed() -> None:
     assert STEP.itemsize == 522
 
@@ -331,7 +338,7 @@ def test_a_walk_in_a_place_with_steps_replays_without_its_file(tmp_path: Path) -
     controller, path = Controller(HUMANOID, scene, seed=3), tmp_path / "rooms.elbow"
     with Recorder(path, controller) as recorder:
         for _ in range(60):
-            recorder.append(Command(forward=1.0), 1 / 60, controller.step(Command(forward=1.0), 1 / 60))
+            recorder.append(controller.step(Command(forward=1.0), 1 / 60), 1 / 60)
     place.unlink()
     assert replay(Recording(path), HUMANOID).identical
     start = scene.start._replace(x=-2.1)  # in the wall
@@ -356,7 +363,7 @@ def test_a_run_with_motions_of_its_own_replays_bit_for_bit(tmp_path: Path) -> No
     with Recorder(path, controller) as recorder:
         for _ in range(90):
             frame = controller.step(Command(forward=1.0), 1 / 60)
-            recorder.append(Command(forward=1.0), 1 / 60, frame)
+            recorder.append(frame, 1 / 60)
     assert replay(Recording(path), HUMANOID).identical
     stock = Controller(HUMANOID, Scene.load("a"), seed=3)
     for _ in range(90):

@@ -64,7 +64,15 @@ def test_shares_are_clipped() -> None:
     assert checked(Command(forward=3.0, strafe=-2.0, turn=0.5)) == Command(1.0, -1.0, 0.5)
 
 
-@pytest.mark.parametrize("command", [Command(forward=math.nan), Command(turn=math.inf), Command(direction=-math.inf)])
+@pytest.mark.parametrize(
+    "command",
+    [
+        Command(forward=math.nan),
+        Command(turn=math.inf),
+        Command(direction=-math.inf),
+        Command(way=((0.0, 1.0), (2.0, math.nan))),
+    ],
+)
 def test_what_is_no_number_is_refused(command: Command) -> None:
     with pytest.raises(InputError, match="finite"):
         checked(command)

@@ -11,7 +11,6 @@ from elbowroom.experiment.crossing_settings import CrossingSettings
 from elbowroom.experiment.judge.motion import ShownMotion
 from elbowroom.experiment.judge.settings import JudgeSettings
 from elbowroom.experiment.judge.verdict import judge
-from elbowroom.planning.command import Command
 from elbowroom.world.scene import Scene
 
 DOORWAY = Scene.load("doorway")
@@ -22,7 +21,7 @@ def cross(planner: str, limit: float, seed: int = 1) -> tuple[bool, NDArray[np.f
     """Whether it went straight, and the frames' configurations and root states."""
     settings, frames = CrossingSettings(planner=planner, seed=seed, limit=limit), list[Frame]()
 
-    def keep(command: Command, dt: float, frame: Frame) -> None:
+    def keep(frame: Frame, dt: float) -> None:
         frames.append(frame)
 
     result = run_crossing(controller_for(AVATAR, DOORWAY, settings), settings, keep)

@@ -38,7 +38,7 @@ def cross(
     settings = CrossingSettings(planner="exact", seed=seed, limit=limit)
     frames: list[Frame] = []
     controller = controller_for(humanoid, scene, settings)
-    return run_crossing(controller, settings, lambda command, dt, frame: frames.append(frame)), frames
+    return run_crossing(controller, settings, lambda frame, dt: frames.append(frame)), frames
 
 
 @pytest.mark.parametrize("seed", sampled([0, 1]))

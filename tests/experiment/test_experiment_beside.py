@@ -60,9 +60,7 @@ def test_a_walk_with_late_plans_is_straight_and_touches_nothing(frames: int) -> 
     desk = SlowDesk(frames)
     controller = controller_for(proportional_humanoid(1.72), Scene.load("b"), settings, desk=desk)
     clearances = []
-    result, times = run_timed_crossing(
-        controller, settings, lambda _, __, frame: clearances.append(frame.clearance), desk
-    )
+    result, times = run_timed_crossing(controller, settings, lambda frame, _: clearances.append(frame.clearance), desk)
     assert result.passed
     assert result.straight
     assert min(clearances) >= 0.0

@@ -39,7 +39,7 @@ def opened(name: str, seed: int) -> tuple[Humanoid, Course]:
 def walked(controller: Controller, humanoid: Humanoid, course: Course) -> tuple[TrialResult, BodyVerdict]:
     """How the walk went, and what the judge says of the mesh in it."""
     shown: list[Frame] = []
-    result = walk_course(controller, course, lambda _command, _dt, frame: shown.append(frame))
+    result = walk_course(controller, course, lambda frame, _dt: shown.append(frame))
     q, roots = np.stack([frame.q for frame in shown]), np.stack([frame.root for frame in shown])
     verdict = judge(ShownMotion.at_rate(q, roots, 1.0 / DT), humanoid, course.scene).mesh
     assert verdict is not None

@@ -40,7 +40,7 @@ def canned_walk(level: int, seed: int) -> tuple[TrialResult, list[Frame]]:
     """The walk of the course's user without any planning of the upper body."""
     made, shown = course(level, seed), []
 
-    def listen(command: Command, dt: float, frame: Frame) -> None:
+    def listen(frame: Frame, dt: float) -> None:
         shown.append(frame)
 
     return walk_course(Controller(stock()[0], made.scene, assist=False), made, listen), shown

@@ -32,7 +32,7 @@ def walked(path: Path, scene: str, seconds: float, assist: bool) -> tuple[float,
     with Recorder(path, controller) as recorder:
         for _ in range(round(seconds / DT)):
             frame = controller.step(Command(forward=1.0), DT)
-            recorder.append(Command(forward=1.0), DT, frame, assist=assist)
+            recorder.append(frame, DT)
             told = min(told, frame.clearance)
     return told, judge_recording(Recording(path), BODY)
 

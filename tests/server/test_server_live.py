@@ -313,6 +313,13 @@ def test_a_flood_is_cut(client: Client) -> None:
     assert "too many messages" in client.complaint()
 
 
+def test_steps_that_are_asked_for_at_once_are_counted_like_messages(client: Client) -> None:
+    for _ in range(20):
+        client.send(ClockMessage(steps=60))
+    assert "too many steps" in client.complaint()
+    client.send(ClockMessage(paused=False))
+
+
 def test_an_abrupt_end_does_no_harm(url: str, client: Client) -> None:
     with client_of(url) as other:
         other.frame()

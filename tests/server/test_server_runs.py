@@ -46,7 +46,7 @@ def walk(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, list[Frame]]:
                 controller.reset()
             frames.append(controller.step(Command(forward=1.0), 0.0 if i == 20 else STEP))
             dt = 0.0 if i == 20 else STEP
-            recorder.append(Command(forward=1.0), dt, frames[-1], assist=False, restart=i == RESTART_AT)
+            recorder.append(frames[-1], dt)
     return file, frames
 
 
@@ -134,7 +134,7 @@ def test_a_run_in_a_place_is_shown_by_its_model(tmp_path: Path) -> None:
     scene, file = Scene.load(model, PlaceOptions(drop=("Door_*",))), tmp_path / "walk.elbow"
     controller = Controller(Humanoid.default(), scene, assist=False)
     with Recorder(file, controller) as recorder:
-        recorder.append(Command(), STEP, controller.step(Command(), STEP), assist=False)
+        recorder.append(controller.step(Command(), STEP), STEP)
     with closing(Library.open(scene)) as library, running(library) as url:
         told, _ = unpack(ask(f"{url}/api/runs?name=walk.elbow", file.read_bytes()))
         live = json.loads(ask(f"{url}/api/scenes/{scene.name}"))

@@ -35,7 +35,7 @@ def walk(tmp_path_factory: pytest.TempPathFactory) -> Path:
     with Recorder(path, controller) as recorder:
         for _ in range(240):
             command = er.Command(forward=1.0)
-            recorder.append(command, STEP, controller.step(command, STEP))
+            recorder.append(controller.step(command, STEP), STEP)
     return path
 
 

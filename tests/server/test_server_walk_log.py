@@ -65,6 +65,18 @@ def test_what_was_pushed_is_in_the_recording_and_a_reset_begins_anew(library: Li
     assert len(recording.scene().obstacles.moving) == 0
 
 
+def test_what_is_pushed_is_kept_with_the_step_in_which_it_was_there(library: Library, tmp_path: Path) -> None:
+    walk = Walk(library.avatars.get("stock"), library.scenes["d"], WalkSettings())
+    walk.push(1, (-2.0, 1.75))
+    shown = []
+    for _ in range(60):
+        walk.step(Command(), STEP)
+        shown.append(next(iter(walk.things.values())).place)
+    moving, times = read(walk, tmp_path).scene().obstacles.moving, STEP * np.arange(1.0, 61.0)
+    np.testing.assert_allclose(moving.poses(times)[0][:, -1, [0, 2]], np.array(shown), atol=2e-3)
+    assert np.abs(np.diff(shown, axis=0)).max() > 0.01
+
+
 def test_ten_minutes_are_kept(library: Library, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(walk_log, "MOST_STEPS", 20)
     walk = Walk(library.avatars.get("stock"), library.scenes["empty"], WalkSettings())

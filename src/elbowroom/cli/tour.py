@@ -96,7 +96,7 @@ def _walked(controller: "Controller", count: int, record: Path | None, quiet: bo
         nullcontext() if record is None else Recorder(record, controller) as recorder,
     ):
         move(0, count)
-        shown = Shown(controller.step(Command(), 0.0), None if recorder is None else recorder.append)
+        shown = Shown(controller.step(Command(), 0.0), recorder)
         return shown, run_tour(controller, places, shown.append, lambda number, _leg: move(number + 1, count))
 
 

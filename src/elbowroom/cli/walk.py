@@ -25,9 +25,9 @@ if TYPE_CHECKING:
     from elbowroom.control.controller import Controller
     from elbowroom.control.frame import Frame
     from elbowroom.control.recordings.recording import Recorder
-    from elbowroom.experiment.crossing import CrossingResult, Listener
+    from elbowroom.experiment.crossing import CrossingResult
+    from elbowroom.experiment.listener import Listener
     from elbowroom.experiment.tour.leg import Leg
-    from elbowroom.planning.command import Command
     from elbowroom.planning.navigation.way import Place, Spot
     from elbowroom.server.vmc.stream import VmcStream
 
@@ -124,11 +124,11 @@ def _listener(bar: Bar, recorder: "Recorder | None", stream: "VmcStream | None",
     """What every step is told to: the recording, a receiver, and now and then the progress bar."""
     count, send = 0, None if stream is None else in_time(stream, humanoid)
 
-    def listen(command: "Command", dt: float, frame: "Frame") -> None:
+    def listen(frame: "Frame", dt: float) -> None:
         nonlocal count
         count += 1
         if recorder is not None:
-            recorder.append(command, dt, frame)
+            recorder.append(frame, dt)
         if send is not None:
             send(frame)
         if count % _FRAMES_PER_UPDATE == 0:

@@ -90,15 +90,18 @@ class Controller:
         self.journey: Journey | None = None  # the walk to a place that goes on, or has ended last
         self._begin()
 
-    def reset(self) -> None:
-        """Back to the start, as if newly made."""
+    def reset(self, start: RootState | None = None) -> None:
+        """Back to the start, as if newly made, or to another `start` from now on.
+
+        Raises `InputError` where the standing avatar touches an obstacle there, and goes on as it was.
+        """
+        anew, start = bool(self._pushing.things), start or self.start
+        grounds = Grounds(self.humanoid, self.scene, self.settings, self._fitted) if anew else self._grounds
+        self._standing_at(start, grounds.walked)
+        self.start, self.journey, self._grounds = start, None, grounds
         self._errands.forget()
-        self.journey = None
-        if self._pushing.things:
-            self._grounds = Grounds(self.humanoid, self.scene, self.settings, self._fitted)
-        else:
-            self._grounds.forget()
-        self._settle_in(self._grounds.walked)
+        grounds.forget()
+        self._settle_in(grounds.walked)
         self._begin()
         self._pushing.rest(self._check, self._queue.time)
 
@@ -184,11 +187,11 @@ class Controller:
         self._flow = self._next = Phase.PLAN
         self._blocked = self._resting = self._halting = self._vain = self._undecided = False
         self.late_plans = 0  # that could not be shown any more when they came
-        self._showing = self._standing_at_start()
+        self._showing = self._standing_at(self.start, self._around)
 
-    def _standing_at_start(self) -> Showing:
-        root = on_ground(self.scene, self.start)._replace(forward=0.0, lateral=0.0, turn=0.0, climb=0.0).as_array()
-        showing = Showing(self._around, root, assist=self.settings.assist)
+    def _standing_at(self, start: RootState, around: PlanningScene) -> Showing:
+        root = on_ground(self.scene, start)._replace(forward=0.0, lateral=0.0, turn=0.0, climb=0.0).as_array()
+        showing = Showing(around, root, assist=self.settings.assist)
         if showing.clearance < 0.0:
             place = f"x {root[0]:.3g}, z {root[1]:.3g}"
             raise InputError(f"scene {self.scene.name}, start: {self.humanoid.name} touches an obstacle at {place}")

@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import replace
+from itertools import chain
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,7 +20,7 @@ _TREMOR_SHARE = 0.02  # of shares
 def checked(command: Command) -> Command:
     """The command with its shares clipped to [-1, 1]; raises `InputError` where a component is no number."""
     shares = (command.forward, command.strafe, command.turn)
-    if not all(map(math.isfinite, (*shares, command.direction or 0.0))):
+    if not all(map(math.isfinite, (*shares, command.direction or 0.0, *chain.from_iterable(command.way)))):
         raise InputError(f"command: {command} holds a value that is no finite number")
     if max(map(abs, shares)) <= 1.0:
         return command

@@ -25,5 +25,5 @@ def record_walk(spec: DatasetSpec, number: int, path: Path) -> None:
     except NoRoomError as error:
         raise InputError(f"walk {number}: {error}") from None
     with Recorder(path, controller) as recorder:
-        for command, frame in steps_of(spec, drawn, setting, controller, company):
-            recorder.append(command, DT, frame)
+        for _, frame in steps_of(spec, drawn, setting, controller, company):
+            recorder.append(frame, DT)

@@ -1,7 +1,6 @@
 """The paper's crossing test: get through the obstacles within 30 s (section 6.1, Table 1)."""
 
 import time
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -15,6 +14,7 @@ from elbowroom.control.frame import Frame
 from elbowroom.control.plans.lookahead import Lookahead
 from elbowroom.experiment.beside import BesideDesk
 from elbowroom.experiment.crossing_settings import CrossingSettings
+from elbowroom.experiment.listener import Listener
 from elbowroom.experiment.pacing import is_realtime, late_frames
 from elbowroom.experiment.rehearsal import rehearse
 from elbowroom.experiment.replans import Replans
@@ -25,7 +25,6 @@ from elbowroom.planning.root.pace import at_speed
 from elbowroom.world.scene import Scene
 
 Floats = NDArray[np.float64]
-Listener = Callable[[Command, float, Frame], None]
 
 DT = 1 / 60  # seconds of a frame
 _SIDEWAYS = 0.02  # metres, the start is drawn within this to either side
@@ -144,7 +143,7 @@ def run_timed_crossing(
         else:
             ledger.enter(frame, cost - (desk.spent - planned), desk.last)
         if listener is not None:
-            listener(command, DT, frame)
+            listener(frame, DT)
     passed = controller.scene.finished(controller.root)
     return ledger.result(controller.scene.name, settings, passed, frame.time), ledger.times()
 

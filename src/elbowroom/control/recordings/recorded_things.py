@@ -1,6 +1,6 @@
 """What was pushed in a run, as recordings keep it: who was in hand, where to, and where each loose thing was shown."""
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
 from typing import Any
 
@@ -29,24 +29,29 @@ Things = NDArray[np.void]
 Floats = NDArray[np.float64]
 
 
-class ThingLog:
-    """Notes the things of a controller after each step."""
+Seen = Mapping[int, tuple[Any, ...]]  # of each thing, by its number, what a row tells of it
 
-    def __init__(self, controller: Controller) -> None:
-        self._controller = controller
-        self._last: dict[int, tuple[Any, ...]] = {}
+
+def seen_now(controller: Controller) -> Seen:
+    """The things that were pushed, as they are after a step."""
+    hand, seen = controller.hand, dict[int, tuple[Any, ...]]()
+    for number, thing in controller.things.items():
+        held = hand is not None and hand.number == number
+        seen[number] = (held, hand.place if held and hand is not None else thing.place, thing.place)
+    return seen
+
+
+class ThingLog:
+    """Notes the things of a run after each step."""
+
+    def __init__(self) -> None:
+        self._last: Seen = {}
         self._rows: list[tuple[Any, ...]] = []
 
-    def note(self, step: int) -> None:
+    def note(self, step: int, seen: Seen) -> None:
         """What is new after this step."""
-        hand = self._controller.hand
-        self._last = {number: told for number, told in self._last.items() if number in self._controller.things}
-        for number, thing in self._controller.things.items():
-            held = hand is not None and hand.number == number
-            told = (held, hand.place if held and hand is not None else thing.place, thing.place)
-            if self._last.get(number) != told:
-                self._last[number] = told
-                self._rows.append((step, number, *told))
+        self._rows += [(step, number, *told) for number, told in seen.items() if self._last.get(number) != told]
+        self._last = seen
 
     def taken(self) -> Things:
         """All that was noted since this was called last."""

@@ -36,7 +36,7 @@ from elbowroom.clips.motion_set import STOCK, MotionSet
 from elbowroom.control.controller import Controller
 from elbowroom.control.frame import Frame, Phase
 from elbowroom.control.recordings.avatar_reference import AvatarReference
-from elbowroom.control.recordings.recorded_things import THING, ThingLog, Things
+from elbowroom.control.recordings.recorded_things import THING, Seen, ThingLog, Things, seen_now
 from elbowroom.control.recordings.recorded_ways import WAY, WayLog, Ways
 from elbowroom.control.recordings.walked_scene import SceneClock, walked_scene
 from elbowroom.control.settings import ControlSettings
@@ -56,6 +56,7 @@ _MAGIC_1 = b"ELBOWROOM RECORDING 1\n"
 STEPS_PER_CHUNK = 60
 MAX_HEADER_BYTES = 32 * 2**20
 MAX_CHUNK_STEPS = 4096
+MOST_STEPS = 5_184_000  # a day, at 60 a second; and as many rows are told beside them
 MAX_CHUNK_ROWS = 65_536  # of what is told beside the steps
 _CHUNK_MARK, _HAND_MARK, _WAYS_MARK, _END_MARK = b"CHNK", b"HAND", b"WAYS", b"DONE"
 _BESIDE = {_HAND_MARK: THING, _WAYS_MARK: WAY}
@@ -163,7 +164,8 @@ class StepWriter:
         self._file = file
         self._pending: list[tuple[Any, ...]] = []
         self._written, self._crc = 0, 0  # steps in all chunks, and of their data
-        self._things, self._ways = ThingLog(controller), WayLog()
+        self._controller, self._time = controller, 0.0  # of the frame before
+        self._things, self._ways = ThingLog(), WayLog()
         header = (told or RecordingHeader.of(controller)).to_json()
         self._file.write(MAGIC + _COUNT.pack(len(header)) + header + _COUNT.pack(zlib.crc32(header)))
         self._file.flush()
@@ -173,15 +175,23 @@ class StepWriter:
         """How many steps there are."""
         return self._written + len(self._pending)
 
-    def append(self, command: Command, dt: float, frame: Frame, *, assist: bool = True, restart: bool = False) -> None:
-        """Keep one step: what was asked, and the frame that `Controller.step` gave for it."""
+    def append(self, frame: Frame, dt: float) -> None:
+        """Keep the step of `dt` seconds that the controller has just made, by the frame that it gave for it."""
+        self.append_later(frame, dt, self._controller.assist, seen_now(self._controller))
+
+    def append_later(self, frame: Frame, dt: float, assist: bool, things: Seen) -> None:
+        """The same of a step since which others may have been made: with the assistance and the `things` it had.
+
+        A frame that is earlier than the one before is the first one after the controller was put back to its start.
+        """
+        command, restart, self._time = frame.command, frame.time < self._time, frame.time
         flags = (
             RUN * command.run | STUCK * frame.stuck | TOUCHING * frame.touching | ASSIST * assist | RESTART * restart
         ) | (LED * command.led | LEVEL * (not command.may_climb))
         direction = np.nan if command.direction is None else command.direction
         wish = (command.forward, command.strafe, command.turn, direction, dt)
         root = told(frame.root)  # without feet where it was not a controller that made it
-        self._things.note(self.steps)
+        self._things.note(self.steps, things)
         self._ways.note(self.steps, command)
         self._pending.append((*wish, frame.q, root, _PHASES.index(frame.phase), flags))
         if len(self._pending) >= STEPS_PER_CHUNK:
@@ -254,8 +264,7 @@ class Recording:
     def __init__(self, path: str | Path) -> None:
         self.path = Path(path)
         self.note: str | None = None  # after reading the steps: why they end before the file does
-        self.things: Things = np.empty(0, THING)  # what was pushed in the steps that are read
-        self.ways: Ways = np.empty(0, WAY)  # that were walked along in them
+        self._beside: dict[bytes, list[NDArray[np.void]]] = {}  # rows told beside the steps that are read
         try:
             with self.path.open("rb") as file:
                 self.header = self._read_header(file)
@@ -285,9 +294,9 @@ class Recording:
 
     def chunks(self) -> Iterator[Steps]:
         """Arrays of `STEP` records in order; ends at the last whole chunk and then says in `note` what is missing."""
-        self.note, self.things, self.ways = None, np.empty(0, THING), np.empty(0, WAY)
+        self.note, self._beside = None, {mark: [np.empty(0, row)] for mark, row in _BESIDE.items()}
         stored = _stored(len(self._places), self.root_size)
-        count, crc = 0, 0
+        count, rows, crc = 0, 0, 0
         with self.path.open("rb") as file:
             file.seek(self._steps_at)
             while head := file.read(_CHUNK_HEAD.size):
@@ -300,16 +309,32 @@ class Recording:
                     return
                 steps, data = found
                 crc = zlib.crc32(data, crc)
-                if head[:4] == _HAND_MARK:
-                    self.things = np.concatenate([self.things, steps])
-                    continue
-                if head[:4] == _WAYS_MARK:
-                    self.ways = np.concatenate([self.ways, steps])
+                rows += len(steps)
+                if rows > 2 * MOST_STEPS:
+                    raise InputError(f"{self.path}: holds more than the {MOST_STEPS} steps of a day")
+                if head[:4] in _BESIDE:
+                    self._beside[head[:4]].append(steps)
                     continue
                 count += len(steps)
                 yield steps if stored == STEP else _completed(steps, self._places)
         if self._has_end:
             self.note = f"the file ends without its end mark: what follows step {count} is missing"
+
+    @property
+    def things(self) -> Things:
+        """What was pushed in the steps that are read."""
+        return self._told_beside(_HAND_MARK)
+
+    @property
+    def ways(self) -> Ways:
+        """The ways that were walked along in them."""
+        return self._told_beside(_WAYS_MARK)
+
+    def _told_beside(self, mark: bytes) -> NDArray[np.void]:
+        parts = self._beside.get(mark, [np.empty(0, _BESIDE[mark])])
+        if len(parts) > 1:
+            parts[:] = [np.concatenate(parts)]
+        return parts[0]
 
     def steps(self) -> Steps:
         """All steps in one array."""

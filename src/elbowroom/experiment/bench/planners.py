@@ -23,7 +23,6 @@ from elbowroom.experiment.judge.verdict import judge
 from elbowroom.experiment.opened import Thing, opened
 from elbowroom.experiment.parallel import Workers
 from elbowroom.experiment.table1.tasks import AvatarFile, NamedScene
-from elbowroom.planning.command import Command
 from elbowroom.planning.goal import natural_walk
 from elbowroom.planning.planner import PLANNERS
 from elbowroom.planning.root.path import RootPath
@@ -158,8 +157,8 @@ def _ours(humanoid: Humanoid, scene: Scene, where: str, planner: str, seed: int,
     warm_up(controller)
     shown: list[Frame] = []
 
-    def listen(command: Command, dt: float, frame: Frame) -> None:
-        del command, dt
+    def listen(frame: Frame, dt: float) -> None:
+        del dt
         shown.append(frame)
 
     result, times = run_timed_crossing(controller, settings, listen)

@@ -16,7 +16,6 @@ from elbowroom.experiment.gauntlet.shapes import in_shapes
 from elbowroom.experiment.gauntlet.trial import JudgeFigures, TrialResult, controller_on, walk_course
 from elbowroom.experiment.gauntlet.trial_settings import TrialSettings
 from elbowroom.experiment.opened import Thing, opened
-from elbowroom.planning.command import Command
 
 Record = dict[str, Any]
 
@@ -69,8 +68,8 @@ class CourseTask:
         warm_up(controller)
         shown: list[Frame] = []
 
-        def listen(command: Command, dt: float, frame: Frame) -> None:
-            del command, dt
+        def listen(frame: Frame, dt: float) -> None:
+            del dt
             shown.append(frame)
 
         result = walk_course(controller, course, listen if self.judge else None)

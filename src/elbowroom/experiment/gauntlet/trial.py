@@ -1,7 +1,6 @@
 """One walk through one course."""
 
 import time
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,9 +13,8 @@ from elbowroom.experiment.crossing import DT
 from elbowroom.experiment.gauntlet.course import Course
 from elbowroom.experiment.gauntlet.trial_settings import TrialSettings
 from elbowroom.experiment.gauntlet.user import CourseUser
+from elbowroom.experiment.listener import Listener
 from elbowroom.planning.command import Command
-
-Listener = Callable[[Command, float, Frame], None]
 
 
 @dataclass(frozen=True)
@@ -72,7 +70,7 @@ def walk_course(controller: Controller, course: Course, listener: Listener | Non
         frame = controller.step(command, DT)
         ledger.enter(frame, time.perf_counter() - began)
         if listener is not None:
-            listener(command, DT, frame)
+            listener(frame, DT)
     return ledger.result(course, course.scene.finished(controller.root), frame.time)
 
 

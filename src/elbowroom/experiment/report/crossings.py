@@ -18,7 +18,6 @@ from elbowroom.experiment.opened import Thing
 from elbowroom.experiment.parallel import Workers
 from elbowroom.experiment.table1.table import Table1
 from elbowroom.experiment.table1.tasks import AvatarFile, NamedScene, open_avatar, open_scene
-from elbowroom.planning.command import Command
 
 Floats = NDArray[np.float64]
 
@@ -58,8 +57,8 @@ class DrawTask:
         humanoid, scene = open_avatar(self.avatar), open_scene(self.scene)
         frames: list[Frame] = []
 
-        def keep(command: Command, dt: float, frame: Frame) -> None:
-            del command, dt
+        def keep(frame: Frame, dt: float) -> None:
+            del dt
             frames.append(frame)
 
         result = run_crossing(controller_for(humanoid, scene, self.settings), self.settings, keep)

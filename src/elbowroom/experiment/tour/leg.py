@@ -1,21 +1,18 @@
 """One walk to one place, as fast as it can be computed."""
 
 import time
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.control.controller import FORWARD, Controller
-from elbowroom.control.frame import Frame
 from elbowroom.control.journey import JourneyState
 from elbowroom.experiment.crossing import DT
+from elbowroom.experiment.listener import Listener
 from elbowroom.planning.command import Command
 from elbowroom.planning.navigation.way import NoWayError, Place, Spot
 from elbowroom.planning.root.pace import at_speed
-
-Listener = Callable[[Command, float, Frame], None]
 
 NO_WAY, OUT_OF_TIME = "no way", "out of time"
 
@@ -77,7 +74,7 @@ def walk_to(
         stuck_frames += frame.stuck
         clearance = min(clearance, frame.clearance)
         if listener is not None:
-            listener(frame.command, DT, frame)
+            listener(frame, DT)
     outcome = OUT_OF_TIME if journey.walking else journey.state.value
     leg = Leg(
         target=target,

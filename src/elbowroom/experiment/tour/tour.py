@@ -8,12 +8,13 @@ from numpy.typing import NDArray
 
 from elbowroom.control.controller import Controller
 from elbowroom.control.frame import Frame
+from elbowroom.control.recordings.recording import Recorder
 from elbowroom.experiment.crossing import DT
 from elbowroom.experiment.judge.motion import ShownMotion
 from elbowroom.experiment.judge.settings import JudgeSettings
 from elbowroom.experiment.judge.verdict import Judging
-from elbowroom.experiment.tour.leg import Leg, LegTimes, Listener, walk_to
-from elbowroom.planning.command import Command
+from elbowroom.experiment.listener import Listener
+from elbowroom.experiment.tour.leg import Leg, LegTimes, walk_to
 from elbowroom.planning.navigation.way import Place, Spot
 
 _SPARE, _PACE = 30.0, 0.4  # seconds; m/s: who is slower on the whole has run out of time
@@ -68,15 +69,15 @@ class TourResult:
 class Shown:
     """Collects what is shown, for the judge."""
 
-    def __init__(self, frame: Frame, listener: Listener | None = None) -> None:
-        self._q, self._roots, self._listener = [frame.q], [frame.root], listener
+    def __init__(self, frame: Frame, recorder: Recorder | None = None) -> None:
+        self._q, self._roots, self._recorder = [frame.q], [frame.root], recorder
 
-    def append(self, command: Command, dt: float, frame: Frame) -> None:
+    def append(self, frame: Frame, dt: float) -> None:
         """Keep one step."""
         self._q.append(frame.q)
         self._roots.append(frame.root)
-        if self._listener is not None:
-            self._listener(command, dt, frame)
+        if self._recorder is not None:
+            self._recorder.append(frame, dt)
 
     def motion(self) -> ShownMotion:
         """All of it."""

@@ -117,8 +117,7 @@ class Walk:
 
     def reset(self) -> None:
         """Back to the start of the scene; the counters of crossings stay."""
-        self._controller.start = self.scene.start
-        self._controller.reset()
+        self._controller.reset(self.scene.start)
         self._controller.assist = self.settings.assist
         self._log.begin()
         self._begin()
@@ -132,7 +131,7 @@ class Walk:
         """Go on by `dt` seconds; the seconds that the crossing took if the finish was passed just now."""
         was_stuck, paced = self.frame.stuck, at_speed(command, self.settings.walk_speed)
         self.frame = self._controller.step(paced, dt)
-        self._log.add(self.frame.command, dt, self.frame, assist=self._controller.assist)
+        self._log.add(self.frame, dt)
         if self.frame.stuck and not was_stuck:
             self.stuck_times += 1
             self._stuck_since_start += 1

@@ -7,19 +7,19 @@ from typing import NamedTuple
 
 from elbowroom.control.controller import Controller
 from elbowroom.control.frame import Frame
+from elbowroom.control.recordings.recorded_things import Seen, seen_now
 from elbowroom.control.recordings.recording import RecordingHeader, StepWriter
 from elbowroom.errors import InputError
-from elbowroom.planning.command import Command
 
 MOST_STEPS = 36_000  # ten minutes; what follows is not kept
 _LONGEST = 0.5  # seconds of standing that are told as one step
 
 
 class _Step(NamedTuple):
-    command: Command
-    dt: float
     frame: Frame
+    dt: float
     assist: bool
+    things: Seen
 
 
 class WalkLog:
@@ -40,9 +40,9 @@ class WalkLog:
             header = replace(self._header, start=self._controller.start)
             self._writer = StepWriter(self._file, self._controller, header)
 
-    def add(self, command: Command, dt: float, frame: Frame, *, assist: bool) -> None:
-        """Keep a step and the frame that it led to."""
-        last, step = self._last, _Step(command, dt, frame, assist)
+    def add(self, frame: Frame, dt: float) -> None:
+        """Keep the step that the controller has just made, by the frame that it led to."""
+        last, step = self._last, _Step(frame, dt, self._controller.assist, seen_now(self._controller))
         if last is not None:
             if self._is_more_of(last, step):
                 step = step._replace(dt=last.dt + dt)
@@ -61,15 +61,15 @@ class WalkLog:
         return self._file.getvalue() + end
 
     def _is_more_of(self, last: _Step, step: _Step) -> bool:
-        stands = last.command.idle and step.command == last.command and last.assist == step.assist
-        if not stands or len(self._controller.things) or last.dt + step.dt > _LONGEST:
-            return False
         frame, other = last.frame, step.frame
+        stands = frame.command.idle and other.command == frame.command and last.assist == step.assist
+        if not stands or step.things or last.dt + step.dt > _LONGEST:
+            return False
         return frame.q.tobytes() == other.q.tobytes() and frame.root.tobytes() == other.root.tobytes()
 
     def _write(self, step: _Step) -> None:
         if self._writer is not None and self._writer.steps < MOST_STEPS:
-            self._writer.append(step.command, step.dt, step.frame, assist=step.assist)
+            self._writer.append_later(*step)
 
 
 def _header_of(controller: Controller) -> RecordingHeader | None:

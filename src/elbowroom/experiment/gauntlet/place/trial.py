@@ -9,7 +9,6 @@ from elbowroom.control.frame import Frame
 from elbowroom.experiment.gauntlet.place.course import PlaceCourse
 from elbowroom.experiment.gauntlet.trial import TrialResult
 from elbowroom.experiment.tour.leg import walk_to
-from elbowroom.planning.command import Command
 
 NO_LEVEL = 0  # that results of courses in places have
 
@@ -20,8 +19,8 @@ def walk_place_course(
     """Go to the goal of a course; `seen` is shown every frame."""
     frames = list[Frame]()
 
-    def listen(command: Command, dt: float, frame: Frame) -> None:
-        del command, dt
+    def listen(frame: Frame, dt: float) -> None:
+        del dt
         frames.append(frame)
         if seen is not None:
             seen(frame)
