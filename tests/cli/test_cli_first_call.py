@@ -29,7 +29,7 @@ finally:
             ("walk --scene gauntlet:9:1", "level: 9"),
             ("walk --planner zzz", "planner 'zzz' is unknown"),
             ("walk --queue 99", "queue size: 99"),
-            ("walk --avatar none.vrm", "none.vrm cannot be read"),
+            ("walk --avatar none.vrm", "none.vrm: cannot be read"),
             ("gauntlet --level 9", "level: 9"),
             ("gauntlet --planner zzz", "planner 'zzz' is unknown"),
             ("table1 --planner exact,zzz", "planner 'zzz' is unknown"),

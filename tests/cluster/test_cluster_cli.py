@@ -31,7 +31,7 @@ def test_wrong_clusters_are_one_line(arguments: list[str], words: str) -> None:
     [
         (["--cluster", "no such"], "neither `local` nor an address"),
         (["--cluster", "127.0.0.1:1"], "or give `local`"),
-        (["--avatar", "missing.vrm"], "missing.vrm cannot be read: No such file"),
+        (["--avatar", "missing.vrm"], "missing.vrm: cannot be read: No such file"),
         (["--scene", "nowhere"], "nowhere"),
         (["--port", "99999"], "--port 99999"),
     ],

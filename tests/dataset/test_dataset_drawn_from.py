@@ -9,7 +9,7 @@ from typer.testing import CliRunner
 from elbowroom.cli.main import app
 
 WRONG = {
-    "swings": ("gone.bvh", "gone.bvh cannot be read"),
+    "swings": ("gone.bvh", "gone.bvh: cannot be read"),
     "avatars": ("gone.vrm", "gone.vrm"),
     "places": ("gone.json", "gone.json"),
     "a place by name": ("nowhere", "'nowhere' is neither a stock scene"),

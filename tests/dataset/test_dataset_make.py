@@ -239,6 +239,13 @@ def test_motion_is_small(tmp_path: Path) -> None:
     assert sum(column.total_compressed_size for column in wanted) / seconds < 6000
 
 
+@pytest.mark.parametrize("call", [["chek", "walks"], ["look"]])
+def test_a_word_that_is_no_command_is_no_spec(call: list[str]) -> None:
+    outcome = CliRunner().invoke(app, ["dataset", *call])
+    assert outcome.exit_code == 2
+    assert f"No such command '{call[0]}'" in outcome.output
+
+
 def test_check_finds_what_was_changed(made: Path, tmp_path: Path) -> None:
     assert check_dataset(made, Here(), 2).faults == ()
     for name, data in contents(made).items():
@@ -251,6 +258,13 @@ def test_check_finds_what_was_changed(made: Path, tmp_path: Path) -> None:
     assert "SHA-256" in fault
     sorted(tmp_path.glob("*.parquet"))[1].unlink()
     assert len(check_dataset(tmp_path, Here(), 0).faults) == 2
+
+
+def test_a_set_of_another_version_is_not_called_damaged(made: Path, tmp_path: Path) -> None:
+    told = json.loads((made / "manifest.json").read_text("utf-8"))
+    (tmp_path / "manifest.json").write_text(json.dumps(told | {"version": 99}), "utf-8")
+    with pytest.raises(InputError, match="no manifest of a dataset of walks, version"):
+        Manifest.of(tmp_path)
 
 
 def test_check_walks_again(made: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -51,4 +51,4 @@ def _digest(place: Path) -> str:
         with place.open("rb") as file:
             return hashlib.file_digest(file, "sha256").hexdigest()
     except OSError as error:
-        raise InputError(f"{place} cannot be read: {error.strerror}") from None
+        raise InputError(f"{place}: cannot be read: {error.strerror}") from None

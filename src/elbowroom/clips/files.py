@@ -15,6 +15,7 @@ from elbowroom.errors import InputError
 from elbowroom.formats.animations import read_animations, take_of
 from elbowroom.formats.bvh import MAX_BYTES, is_bvh, parse_bvh
 from elbowroom.formats.fields import Field
+from elbowroom.formats.file_bytes import read_file
 from elbowroom.formats.foreign_files import told_apart
 from elbowroom.formats.gltf import Gltf, parse_gltf
 from elbowroom.formats.hanim.figure import HanimFigure, parse_figure
@@ -53,15 +54,7 @@ class MotionFile:
 
 def open_motion(path: Path, told: Told | None = None) -> MotionFile:
     """Open a motion file; raises `InputError`."""
-    try:
-        if path.stat().st_size > 8 * MAX_BYTES:
-            raise InputError(f"{path.name} is larger than {8 * MAX_BYTES >> 20} MB")
-        data = path.read_bytes()
-    except OSError as error:
-        raise InputError(f"{path} cannot be read: {error.strerror or error}") from None
-    except ValueError:
-        raise InputError(f"{str(path)!r} is not a file name") from None
-    beside = override_beside(path)
+    data, beside = read_file(path, 8 * MAX_BYTES), override_beside(path)
     return parse_motion(data, path.name, told, path.parent, None if beside is None else read_override(beside))
 
 

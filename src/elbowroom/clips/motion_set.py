@@ -124,6 +124,8 @@ class MotionSet:
                 tuple(_clip(dodge) for dodge in dodges),
                 PLAIN_STYLE if style is None else Style.from_dict(style),
             )
+        except InputError:
+            raise
         except (KeyError, TypeError, ValueError, AttributeError) as error:
             raise InputError(f"{place}: the motions are not as they were written ({error!r:.80})") from None
 

@@ -55,6 +55,8 @@ class Manifest:
                 raise InputError(f"{path}: is no manifest of a dataset of walks, version {VERSION}")
             shards = tuple(Written(**entry) for entry in given["shards"])
             return cls(DatasetSpec.of(given["spec"]), shards, given["made_with"])
+        except InputError:
+            raise
         except (OSError, ValueError, KeyError, TypeError, RecursionError):
             raise InputError(f"{path}: is damaged; move it away to begin anew") from None
 

@@ -6,6 +6,7 @@ from pathlib import Path
 
 from elbowroom.errors import InputError
 from elbowroom.formats.fields import Field, parse_json
+from elbowroom.formats.file_bytes import read_file
 from elbowroom.formats.foreign_files import told_apart
 from elbowroom.formats.resources import read_uri
 
@@ -28,16 +29,7 @@ class Gltf:
 
 def read_gltf(path: Path) -> Gltf:
     """Read a .glb, .vrm or .gltf file; raises `InputError`."""
-    try:
-        size = path.stat().st_size
-        if size > MAX_BYTES:
-            raise InputError(f"{path.name} has {size >> 20} MB: at most {MAX_BYTES >> 20} MB are read")
-        data = path.read_bytes()
-    except OSError as error:
-        raise InputError(f"{path} cannot be read: {error.strerror or error}") from None
-    except ValueError:
-        raise InputError(f"{str(path)!r} is not a file name") from None
-    return parse_gltf(data, path.name, path.parent)
+    return parse_gltf(read_file(path, MAX_BYTES), path.name, path.parent)
 
 
 def parse_gltf(data: bytes, name: str, folder: Path | None = None) -> Gltf:

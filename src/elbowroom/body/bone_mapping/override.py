@@ -25,7 +25,7 @@ def read_override(path: Path) -> Field:
             raise InputError(f"{path.name} is larger than {_LARGEST >> 20} MB: it must be a short list of bones")
         return parse_override(path.read_bytes(), path.name)
     except OSError as error:
-        raise InputError(f"{path} cannot be read: {error.strerror or error}") from None
+        raise InputError(f"{path}: cannot be read: {error.strerror or error}") from None
 
 
 def parse_override(data: bytes, name: str) -> Field:

@@ -54,7 +54,7 @@ def check_file(file: Path) -> None:
         with file.open("rb"):
             pass
     except OSError as error:
-        raise InputError(f"{file} cannot be read: {error.strerror}") from None
+        raise InputError(f"{file}: cannot be read: {error.strerror}") from None
 
 
 def check_folder(folder: Path | None) -> None:

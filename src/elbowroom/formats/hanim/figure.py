@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.errors import InputError
+from elbowroom.formats.file_bytes import read_file
 from elbowroom.formats.glb_draft import GlbDraft
 from elbowroom.formats.gltf import Gltf, parse_gltf
 from elbowroom.formats.hanim.displacers import Displacer, displacers_in
@@ -27,7 +28,7 @@ from elbowroom.formats.hanim.humanoid_node import (
 from elbowroom.formats.hanim.skin import skin_weights
 from elbowroom.formats.x3d.expand import MAX_NODES as MAX_VISITED
 from elbowroom.formats.x3d.expand import expand
-from elbowroom.formats.x3d.files import Library, parse_x3d, read_bytes
+from elbowroom.formats.x3d.files import MAX_BYTES, Library, parse_x3d
 from elbowroom.formats.x3d.looks import Looks, linear_colours
 from elbowroom.formats.x3d.mesh import Mesh
 from elbowroom.formats.x3d.model import Node, Nodes, Notes, X3dScene
@@ -88,7 +89,7 @@ class HanimFigure:
 
 def read_figure(path: Path, default_pose: bool = True) -> HanimFigure:
     """The humanoid of a file; raises `InputError`. Without `default_pose` its joints stay as the file turns them."""
-    return parse_figure(read_bytes(path), path.name, path.parent, default_pose)
+    return parse_figure(read_file(path, MAX_BYTES), path.name, path.parent, default_pose)
 
 
 def parse_figure(data: bytes, file: str, folder: Path | None = None, default_pose: bool = True) -> HanimFigure:

@@ -35,7 +35,6 @@ _BY_SUFFIX = {
     **dict.fromkeys((".usd", ".usda", ".usdc", ".usdz"), ModelKind.USD),
     **dict.fromkeys(X3D_SUFFIXES, ModelKind.X3D),
 }
-MODEL_SUFFIXES = tuple(_BY_SUFFIX)
 
 
 _BEGINNINGS = (

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from elbowroom.errors import InputError
+from elbowroom.formats.file_bytes import read_file
 from elbowroom.formats.foreign_files import told_apart
 from elbowroom.formats.gltf import Gltf, parse_gltf
 from elbowroom.formats.models.kinds import ModelKind, kind_of
@@ -25,16 +26,7 @@ class Model:
 
 def read_model(path: Path) -> Model:
     """Read a model and what it names in its own folder; raises `InputError`."""
-    try:
-        size = path.stat().st_size
-        data = path.read_bytes() if size <= MAX_BYTES else b""
-    except OSError as error:
-        raise InputError(f"{path}: cannot be read: {error.strerror or error}") from None
-    except ValueError:
-        raise InputError(f"{str(path)!r} is not a file name") from None
-    if size > MAX_BYTES:
-        raise InputError(f"{path}: has {size >> 20} MB; at most {MAX_BYTES >> 20} MB are read")
-    return parse_model(data, path.name, path.parent)
+    return parse_model(read_file(path, MAX_BYTES), path.name, path.parent)
 
 
 def parse_model(data: bytes, name: str, folder: Path | None = None) -> Model:

@@ -4,9 +4,10 @@ from pathlib import Path
 
 from elbowroom.errors import InputError
 from elbowroom.formats.fields import Field
+from elbowroom.formats.file_bytes import read_file
 from elbowroom.formats.gltf import parse_gltf, read_gltf
 from elbowroom.formats.models.kinds import ModelKind, kind_by_name, kind_of
-from elbowroom.formats.x3d.files import read_bytes, unpacked
+from elbowroom.formats.x3d.files import MAX_BYTES, unpacked
 
 _VRM = ("VRM", "VRMC_vrm")
 _HUMANOIDS = (b"Humanoid", b"HAnimJoint")
@@ -35,7 +36,7 @@ def is_of_a_place(path: Path) -> bool:
     kind = kind_by_name(path.name)
     try:
         if kind is ModelKind.X3D:
-            text = unpacked(read_bytes(path), path.name)
+            text = unpacked(read_file(path, MAX_BYTES), path.name)
             return not any(word in text for word in _HUMANOIDS)
         if kind is ModelKind.GLTF:
             root = read_gltf(path).root

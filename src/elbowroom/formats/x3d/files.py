@@ -6,6 +6,7 @@ from urllib.parse import unquote
 
 from elbowroom.errors import InputError
 from elbowroom.formats.fields import beginning_of
+from elbowroom.formats.file_bytes import read_file
 from elbowroom.formats.x3d.classic import parse_classic
 from elbowroom.formats.x3d.model import Interface, Node, Notes, X3dScene
 from elbowroom.formats.x3d.recognised import GZIP, UTF16
@@ -42,18 +43,6 @@ def unpacked(data: bytes, file: str) -> bytes:
     if len(data) > MAX_BYTES:
         raise InputError(f"{file} has more than {MAX_BYTES >> 20} MB of text")
     return data
-
-
-def read_bytes(path: Path) -> bytes:
-    """The bytes of a file of sane size; raises `InputError`."""
-    try:
-        if path.stat().st_size > MAX_BYTES:
-            raise InputError(f"{path.name} has {path.stat().st_size >> 20} MB: at most {MAX_BYTES >> 20} MB are read")
-        return path.read_bytes()
-    except OSError as error:
-        raise InputError(f"{path} cannot be read: {error.strerror or error}") from None
-    except ValueError:
-        raise InputError(f"{str(path)!r} is not a file name") from None
 
 
 class Library:
@@ -114,7 +103,7 @@ class Library:
     def _read(self, path: str, node: Node) -> bytes:
         if self._folder is None:
             raise InputError(f"{node.place}: no other files can be read here")
-        data = read_bytes(self._folder / path)
+        data = read_file(self._folder / path, MAX_BYTES)
         self._bytes += len(data)
         if self._bytes > MAX_BYTES:
             raise InputError(f"{node.place}: the files beside the scene have more than {MAX_BYTES >> 20} MB")
