@@ -29,6 +29,8 @@ def main(file: str | None = None) -> None:
     frame, near = controller.step(er.Command(), dt=0.0), False
     while not scene.finished(controller.root):
         frame = controller.step(er.Command(forward=1.0), dt=1 / 60)
+        if frame.stuck:
+            sys.exit(f"No way on after {frame.time:.1f} s, at z {controller.root.z:.1f} m")
         if near is not (frame.clearance < 0.1):
             near = not near
             told = f"something is near, {math.degrees(frame.q[3]):.0f}° bent" if near else "free again"

@@ -306,3 +306,8 @@ def test_of_boards_on_boards_the_topmost_is_the_ground() -> None:
     found = survey(place(boards, PlaceOptions()))
     assert [round(floor.height, 2) for floor in found.floors] == [0.03]
     assert found.ground.height == pytest.approx(0.03, abs=0.006)
+
+
+def test_a_single_pattern_is_not_read_letter_by_letter() -> None:
+    with pytest.raises(InputError, match="must be a tuple of patterns"):
+        PlaceOptions(drop="IfcDoor_*")  # type: ignore[arg-type]

@@ -16,6 +16,7 @@ from elbowroom.body.root import RootState
 from elbowroom.errors import InputError
 from elbowroom.geometry import quaternion
 from elbowroom.world.obstacles.clearance import clearance
+from elbowroom.world.places.options import PlaceOptions
 from elbowroom.world.scene import MAX_FILE_BYTES, Gate, Scene
 
 SCHEMA = json.loads((files("elbowroom.world") / "data" / "scene.schema.json").read_text("utf-8"))
@@ -357,3 +358,8 @@ def test_a_scene_made_in_code_is_one_of_a_file() -> None:
     assert Scene.from_dict(scene.to_dict()).to_dict() == scene.to_dict()
     with pytest.raises(InputError, match=r"posts: \$.obstacles\[0\] lacks the field 'size'"):
         Scene.of("posts", [{"type": "box", "center": [1.0, 1.0, 2.0]}], finish=(3.0, 4.0))
+
+
+def test_how_a_model_is_read_is_not_told_of_other_scenes() -> None:
+    with pytest.raises(InputError, match="c: how a model is read is told in the scene's own"):
+        Scene.load("c", PlaceOptions(scale=2.0))

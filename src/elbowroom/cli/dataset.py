@@ -32,11 +32,14 @@ class _OrMake(TyperGroup):
     default = "make"
 
     def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
-        named = args[:1] and (args[0] in self.commands or args[0] in ctx.help_option_names)
-        return super().parse_args(ctx, args if named or not args else [self.default, *args])
+        first = args[0] if args else ""
+        spec = first.startswith("-") or Path(first).suffix != "" or Path(first).is_file()
+        anew = spec and first not in (*self.commands, *ctx.help_option_names)
+        return super().parse_args(ctx, [self.default, *args] if anew else args)
 
 
-dataset = typer.Typer(cls=_OrMake, help="Make, check and look at datasets of walks.", epilog=EXAMPLES)
+_HELP = "Make, check and look at datasets of walks; `dataset SPEC.json` is `dataset make SPEC.json`."
+dataset = typer.Typer(cls=_OrMake, help=_HELP, epilog=EXAMPLES)
 
 
 @dataset.command(epilog=EXAMPLES)

@@ -70,18 +70,20 @@ class Scene:
         `InputError` if there is no such scene, or the file breaks the published schema
         (`elbowroom/world/data/scene.schema.json`), or its start stands in an obstacle, or the model cannot be read.
         """
+        check_scene_name(name_or_path)
         stock = None if isinstance(name_or_path, Path) else name_or_path.lower()
+        model = stock not in stock_names() and kind_by_name(Path(name_or_path).name) is not None
+        if not model and options is not None and options != PlaceOptions():
+            told = 'is told in the scene\'s own "place" (docs/scenes.md)'
+            raise InputError(f"{name_or_path}: how a model is read {told}")
         if stock in stock_names():
             source = f"{stock}.json"
             return cls.from_dict(parse_json((stock_folder() / source).read_text("utf-8"), source), source)
-        check_scene_name(name_or_path)
         path = Path(name_or_path)
-        if kind_by_name(path.name) is not None:
+        if model:
             from elbowroom.world.places.place_scene import load_place_scene
 
             return load_place_scene(path, options or PlaceOptions(), progress)
-        if options is not None and options != PlaceOptions():
-            raise InputError(f'{path}: how a model is read is told in the scene\'s own "place" (docs/scenes.md)')
         return cls.from_dict(_read(path), str(path), path.parent)
 
     @staticmethod

@@ -4,7 +4,7 @@ import type { AvatarMessage, PoseFrame, SceneMessage } from "../generated/messag
 import type { Loose } from "../stage/loose";
 import { moves, type Take } from "./take";
 
-/** Frames of all walks together: ten minutes; the oldest go first. */
+/** Frames of all walks together: ten minutes; the oldest go first, and a walk of five minutes is told in two. */
 export const MOST_FRAMES = 36_000;
 const MOST_TAKES = 12;
 /** A walk shorter than this is none, seconds. */
@@ -76,7 +76,7 @@ export class WalkKeeper {
   private shorten(draft: Draft): void {
     let kept = draft.frames.length + this.done.reduce((sum, { frames }) => sum + frames.length, 0);
     while (kept > this.most && this.done.length > 0) kept -= this.done.shift()?.frames.length ?? 0;
-    if (kept > this.most) draft.frames.splice(0, kept - this.most + Math.floor(this.most / 60));
+    if (draft.frames.length >= this.most / 2) this.begin(draft.circumstances);
   }
 }
 

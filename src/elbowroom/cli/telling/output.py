@@ -19,7 +19,7 @@ QUEUE_HELP = "Size of the key-frame queue, |Q|: 2 to 32; the paper has 3 to 7."
 
 SCENE_HELP = (
     "A scene by name (a, b, c, d, beam, doorway, traffic, shapes, empty), a course (gauntlet:5:1013), a scene file, "
-    "or a model of a place (GLB, X3D, VRML, OBJ, STL, PLY)."
+    "or a model of a place (GLB, X3D, VRML, OBJ, STL, PLY, USD)."
 )
 
 

@@ -3,7 +3,6 @@
 Plans keep clear of the boxes, which are larger than what they hold. Whether a pose touches is asked of the body.
 """
 
-from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -62,8 +61,3 @@ class Neighbour(NamedTuple):
         out = np.full(axes.shape[2], np.inf, np.float32)
         lower_to_body(axes, body.astype(np.float32), allowed, np.ones(len(body), np.bool_), out)
         return float(out[0])
-
-
-def boxes_of(neighbours: Sequence[Neighbour]) -> Moving:
-    """The boxes of all of them."""
-    return Moving(tuple(track for neighbour in neighbours for track in neighbour.boxes.tracks))

@@ -14,12 +14,12 @@ class TokenBucket:
         self._tokens = self.burst
         self._last: float | None = None
 
-    def allows(self, now: float) -> bool:
-        """Whether one more event at time `now` (seconds, never decreasing) stays within the limit."""
+    def allows(self, now: float, events: int = 1) -> bool:
+        """Whether so many more events at time `now` (seconds, never decreasing) stay within the limit."""
         elapsed = 0.0 if self._last is None else max(now - self._last, 0.0)
         self._last = now
         self._tokens = min(self._tokens + elapsed * self.rate, self.burst)
-        if self._tokens < 1.0:
+        if self._tokens < events:
             return False
-        self._tokens -= 1.0
+        self._tokens -= events
         return True

@@ -223,6 +223,8 @@ class Session:
 
     def _control(self, message: ClockMessage | Reset | Overlays) -> None:
         if isinstance(message, ClockMessage):
+            if message.steps is not None and not self._bucket.allows(self._heard, message.steps):
+                raise InputError("too many steps: at most 240 a second are taken")
             self._tell(self._stage.set_clock(message))
         elif isinstance(message, Reset):
             self._stage.reset()

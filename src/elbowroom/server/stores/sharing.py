@@ -26,12 +26,10 @@ def share_avatar(library: Library, avatar: StoredAvatar) -> None:
 
 def share_clips(library: Library, sent: SentMotions, clips: list[StoredClip]) -> None:
     """Let them have motions that were sent."""
+    name, ids = f"motions:{clips[0].id}", [clip.id for clip in clips]
+    _put(library, name, lambda: (replace(sent, path=Path()), ids, sent.path.read_bytes()))
     for clip in clips:
-        _put(
-            library,
-            f"clip:{clip.id}",
-            lambda: (replace(sent, path=Path()), [c.id for c in clips], sent.path.read_bytes()),
-        )
+        _put(library, f"clip:{clip.id}", lambda: name)
 
 
 def share_scene(library: Library, scene: Scene) -> None:
@@ -66,7 +64,8 @@ def bring_clip(library: Library, clip_id: str) -> None:
     with suppress(InputError):
         library.clips.check(clip_id)
         return
-    found = _get(library, f"clip:{clip_id}")
+    name = _get(library, f"clip:{clip_id}")
+    found = None if name is None else _get(library, name)
     if found is not None:
         sent, ids, data = found
         path = _written(library, f"clip-{clip_id}", data)

@@ -29,6 +29,10 @@ class PlaceOptions:
             raise InputError(f"up {self.up[:20]!r}: must be one of {', '.join(AXES)}")
         if self.ground is not None and not (math.isfinite(self.ground) and abs(self.ground) <= _FARTHEST):
             raise InputError(f"ground {self.ground:g}: must be a height in metres")
+        lists: dict[str, object] = {"drop": self.drop, "passable": self.passable}
+        for name, patterns in lists.items():
+            if isinstance(patterns, str):
+                raise InputError(f"{name} {patterns[:40]!r}: must be a tuple of patterns, such as ({patterns[:40]!r},)")
         for pattern in (*self.drop, *self.passable):
             if not 0 < len(pattern) <= _LONGEST_PATTERN:
                 raise InputError(f"the pattern {pattern[:20]!r} has no character or more than {_LONGEST_PATTERN}")
