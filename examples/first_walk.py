@@ -9,10 +9,10 @@ import elbowroom as er
 
 def main() -> None:
     """Walk to the finish and print a line for every half metre."""
-    scene = er.Scene.load("c")
-    controller = er.Controller(er.Humanoid.default(), scene, seed=0)
+    scene, avatar = er.Scene.load("c"), er.Humanoid.default()
+    controller = er.Controller(avatar, scene, seed=0)
     print(f"{scene.title}: {scene.description}\n")
-    print("    z   bend  twist   left arm  right arm   nearest obstacle")
+    print("    z   bend  twist   left hand, right hand   nearest obstacle")
 
     frame, printed, nearest = controller.step(er.Command(), dt=0.0), -1.0, math.inf
     while not scene.finished(controller.root):
@@ -22,9 +22,11 @@ def main() -> None:
         nearest = min(nearest, frame.clearance)
         if controller.root.z - printed >= 0.5:
             printed = controller.root.z
-            bend, twist, _, left, _, _, _, right, *_ = np.degrees(frame.q[3:])
-            gap = f"{frame.clearance * 100:5.1f} cm"
-            print(f"{printed:5.1f} {bend:5.0f}° {twist:5.0f}° {left:8.0f}° {right:8.0f}°   {gap:>16}")
+            bend, twist = np.degrees(frame.q[3:5])
+            pose = frame.pose(avatar)  # rotations of all bones too, for who draws it
+            left, right = (pose.joint(hand)[1] for hand in ("leftHand", "rightHand"))  # metres above the ground
+            gap = f"{frame.clearance * 100:13.1f} cm"
+            print(f"{printed:5.1f} {bend:5.0f}° {twist:5.0f}° {left:9.2f} m {right:9.2f} m {gap}")
 
     print(f"\nThrough after {frame.time:.1f} s. No pose came nearer than {nearest * 1000:.0f} mm to anything.")
 

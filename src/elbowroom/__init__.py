@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from elbowroom.body.humanoid import Humanoid as Humanoid
+    from elbowroom.body.loading.settings import LoadSettings as LoadSettings
     from elbowroom.body.root import RootState as RootState
     from elbowroom.clips.clip import Clip as Clip
     from elbowroom.clips.clip import motions_of as motions_of
@@ -18,10 +19,12 @@ if TYPE_CHECKING:
     from elbowroom.control.frame import Phase as Phase
     from elbowroom.control.plans.lookahead import Lookahead as Lookahead
     from elbowroom.control.recordings.recording import Recorder as Recorder
+    from elbowroom.control.recordings.recording import Recording as Recording
     from elbowroom.control.shown.body_check import BodyCheck as BodyCheck
     from elbowroom.errors import InputError as InputError
     from elbowroom.planning.command import Command as Command
     from elbowroom.planning.goal import natural_walk as natural_walk
+    from elbowroom.planning.navigation.way import NoWayError as NoWayError
     from elbowroom.planning.planner import Planner as Planner
     from elbowroom.planning.planner import register_planner as register_planner
     from elbowroom.planning.result import LocalPlan as LocalPlan
@@ -44,13 +47,16 @@ _HOMES = {
     "Gate": "world.scene",
     "Humanoid": "body.humanoid",
     "InputError": "errors",
+    "LoadSettings": "body.loading.settings",
     "LocalPlan": "planning.result",
     "Lookahead": "control.plans.lookahead",
+    "NoWayError": "planning.navigation.way",
     "Phase": "control.frame",
     "PlaceOptions": "world.places.options",
     "PlanStatus": "planning.result",
     "Planner": "planning.planner",
     "Recorder": "control.recordings.recording",
+    "Recording": "control.recordings.recording",
     "RootPath": "planning.root.path",
     "RootState": "body.root",
     "Scene": "world.scene",

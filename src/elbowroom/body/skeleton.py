@@ -5,6 +5,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from elbowroom.geometry import quaternion
+
+Floats = NDArray[np.float64]
+
 
 @dataclass(frozen=True, eq=False)
 class Skeleton:
@@ -28,6 +32,17 @@ class Skeleton:
     def has(self, bone: str) -> bool:
         """Whether the avatar has this bone."""
         return bone in self.names
+
+    def joints(self, rotations: Floats, hips: Floats) -> Floats:
+        """Places (..., J, 3) of all joints, by local `rotations` (..., J, 4) and the place of the hips (..., 3)."""
+        places, turns = np.empty((*rotations.shape[:-1], 3)), rotations.copy()
+        places[..., 0, :] = hips
+        for joint, parent in enumerate(self.parents):
+            if parent >= 0:
+                bone = self.positions[joint] - self.positions[parent]
+                places[..., joint, :] = places[..., parent, :] + quaternion.rotate(turns[..., parent, :], bone)
+                turns[..., joint, :] = quaternion.multiply(turns[..., parent, :], rotations[..., joint, :])
+        return places
 
     @property
     def height(self) -> float:

@@ -59,9 +59,9 @@ class Posture:
 class Style:
     """A way to walk; without arguments the plain one. Raises `InputError` for what no body could show."""
 
-    name: str = PLAIN_NAME
+    name: str = PLAIN_NAME  # by which it is chosen
     speed: float = WALK_SPEED  # m/s that it likes to walk
-    manner: Manner = PLAIN
+    manner: Manner = PLAIN  # how hips and chest are carried
     posture: Posture | None = None  # None: that of the plain walk
 
     def __post_init__(self) -> None:

@@ -14,9 +14,9 @@ _FPS = (1.0, 1000.0)
 class Told:
     """Unit by name or in metres, the axis that points up, frames a second; None is recognised. Raises `InputError`."""
 
-    unit: str | None = None
-    up: str | None = None
-    fps: float | None = None
+    unit: str | None = None  # of lengths: a name such as "cm", or metres as a number
+    up: str | None = None  # the axis that points up
+    fps: float | None = None  # frames a second
 
     def __post_init__(self) -> None:
         if self.up is not None and self.up.lower() not in AXES:

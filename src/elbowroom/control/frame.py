@@ -9,6 +9,8 @@ from numpy.typing import NDArray
 from elbowroom.body.dof import DOF, LOCAL
 from elbowroom.body.gait.foot_state import standing
 from elbowroom.body.gait.stride import feet_standing
+from elbowroom.body.humanoid import Humanoid
+from elbowroom.body.pose.pose import Pose, pose_of
 from elbowroom.body.root import ROOT_STATE
 from elbowroom.control.key_frame_queue import KeyFrames
 from elbowroom.planning.command import Command
@@ -77,6 +79,10 @@ class Frame:
     def goal(self) -> Floats:
         """What the goal functions would show now (LOCAL,); what is shown, where nothing was planned."""
         return self.q[DOF - LOCAL :] if self.plan is None else self.plan.goal_at(self.time)
+
+    def pose(self, humanoid: Humanoid) -> Pose:
+        """The pose in the terms of VRM, for who draws the avatar that walks: rotations of bones, places of joints."""
+        return pose_of(humanoid, self.q, self.root)
 
     @property
     def contacts(self) -> NDArray[np.bool_]:

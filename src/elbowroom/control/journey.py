@@ -31,9 +31,9 @@ _PAST = 1.5  # metres along the way from there: one has got past
 class JourneyState(Enum):
     """How it stands with a journey."""
 
-    WALKING = "walking"
-    ARRIVED = "arrived"
-    GIVEN_UP = "given up"
+    WALKING = "walking"  # it goes on
+    ARRIVED = "arrived"  # who walks stands there
+    GIVEN_UP = "given up"  # for the journey's `reason`
     TAKEN_OVER = "taken over"  # the user went elsewhere
 
 
@@ -42,9 +42,9 @@ class Journey:
 
     def __init__(self, navigator: Navigator, way: Way, pace: Command) -> None:
         """`pace` says how fast: its `forward` and `run`."""
-        self.state = JourneyState.WALKING
+        self.state = JourneyState.WALKING  # how it stands with it
         self.reason = ""  # why it was given up
-        self.way = way
+        self.way = way  # that is walked along
         self._navigator, self._pace = navigator, pace
         self._closed: list[tuple[Spot, float]] = []
         self._corners: list[Place] = []  # of the way that is walked along

@@ -79,14 +79,9 @@ class Animation:
 
     def joints_in_world(self) -> Floats:
         """Places (F, J, 3) of all joints in the world, metres."""
-        rest, parents = self.skeleton.positions, self.skeleton.parents
-        places, turns = np.empty((len(self), len(parents), 3)), np.empty((len(self), len(parents), 4))
-        places[:, 0], turns[:, 0] = self.hips_in_world()
-        for joint, parent in enumerate(parents):
-            if parent >= 0:
-                places[:, joint] = places[:, parent] + quaternion.rotate(turns[:, parent], rest[joint] - rest[parent])
-                turns[:, joint] = quaternion.multiply(turns[:, parent], self.rotations[:, joint])
-        return places
+        rotations = self.rotations.copy()
+        hips, rotations[:, 0] = self.hips_in_world()
+        return self.skeleton.joints(rotations, hips)
 
 
 @dataclass(frozen=True, eq=False)

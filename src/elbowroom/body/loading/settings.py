@@ -14,7 +14,7 @@ class LoadSettings:
     """Options of `Humanoid.load`; raises `InputError` for a height that no humanoid has."""
 
     # Nodes of bones: a JSON file, or bone -> node (name, number, None for none); None: `FILE.bones.json`, if any
-    bones: Path | Mapping[str, str | int | None] | None = None
+    bones: Path | Mapping[str, str | int | None] | None = None  # the nodes of its bones, where they are told
     include_hair: bool = False  # hair, skirts and the like belong to the collision body too
     height: float | None = None  # metres from the ground to the crown; None: as the file has it
 

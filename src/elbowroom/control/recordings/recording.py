@@ -262,12 +262,12 @@ class Recording:
     """
 
     def __init__(self, path: str | Path) -> None:
-        self.path = Path(path)
+        self.path = Path(path)  # of the file
         self.note: str | None = None  # after reading the steps: why they end before the file does
         self._beside: dict[bytes, list[NDArray[np.void]]] = {}  # rows told beside the steps that are read
         try:
             with self.path.open("rb") as file:
-                self.header = self._read_header(file)
+                self.header = self._read_header(file)  # who walked, where, and as what
                 self._steps_at = file.tell()
         except OSError as error:
             raise InputError(f"{self.path}: cannot be read ({error.strerror})") from None

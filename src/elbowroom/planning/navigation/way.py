@@ -29,7 +29,7 @@ class NoWayError(InputError):
 
     def __init__(self, why: str, nearest: Place | None = None) -> None:
         super().__init__(why if nearest is None else f"{why}; the nearest place to stand is {said(nearest)}")
-        self.nearest = nearest
+        self.nearest = nearest  # where one can stand near it: x, height, z
 
 
 def said(place: Place) -> str:
