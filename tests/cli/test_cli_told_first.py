@@ -3,6 +3,7 @@
 import json
 import subprocess
 import sys
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
@@ -10,6 +11,7 @@ import pytest
 from typer.testing import CliRunner
 
 from elbowroom.cli.main import app
+from elbowroom.cli.options import arguments
 from elbowroom.server.kernels import kernel_cache
 
 RECORDING = [["verify"], ["replay"], ["export", "-o", "run.bvh"], ["film", "-o", "run.mp4"]]
@@ -181,13 +183,25 @@ def test_a_slip_is_told_in_a_line_before_anything_heavy_is_imported(call: str, t
     assert error.count("\n") == 1, error
 
 
-@pytest.mark.parametrize("arguments", [["walk"], ["tour", "a"], ["table1"], ["gauntlet"], ["bench", "plan"]])
+@pytest.mark.parametrize("call", [["walk"], ["tour", "a"], ["table1"], ["gauntlet"], ["bench", "plan"]])
 def test_a_call_that_is_right_compiles_kernels(
-    arguments: list[str], monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+    call: list[str], monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     def begun() -> bool:
         raise CompiledError
 
     monkeypatch.setattr(kernel_cache, "is_warm", begun)
     monkeypatch.chdir(tmp_path)
-    assert isinstance(CliRunner().invoke(app, arguments).exception, CompiledError)
+    assert isinstance(CliRunner().invoke(app, call).exception, CompiledError)
+
+
+@pytest.mark.parametrize("call", ["tour a", "gauntlet --judge", "verify there.elbow"])
+def test_who_lacks_the_judge_hears_it_before_anything_is_walked(
+    call: str, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.setattr(arguments, "find_spec", lambda name: None if name == "coal" else find_spec(name))
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "there.elbow").touch()
+    outcome = CliRunner().invoke(app, call.split())
+    assert outcome.exit_code == 2
+    assert "elbowroom[judge]" in outcome.output

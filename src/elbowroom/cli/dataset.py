@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 from typer.core import TyperGroup
 
-from elbowroom.cli.options.arguments import check_arguments, check_folder
+from elbowroom.cli.options.arguments import check_arguments, check_folder, check_judge
 from elbowroom.cli.options.workers import Cluster, Jobs, check_workers, chosen_workers
 from elbowroom.cli.telling.first_run import compile_first
 from elbowroom.cli.telling.output import print_json, print_row
@@ -93,7 +93,7 @@ def make(
 
 @dataset.command(epilog=EXAMPLES)
 def check(
-    folder: Annotated[Path, typer.Argument(help="Of a dataset.")],
+    folder: Annotated[Path, typer.Argument(help="Folder of a dataset.")],
     *,
     sample: Annotated[int, typer.Option(help="Walks that are walked again.")] = 5,
     show: Annotated[int | None, typer.Option(metavar="K", help="Open walk K on the page instead.")] = None,
@@ -135,7 +135,7 @@ def check(
 
 @dataset.command(epilog=EXAMPLES)
 def report(
-    folder: Annotated[Path, typer.Argument(help="Of a dataset.")],
+    folder: Annotated[Path, typer.Argument(help="Folder of a dataset.")],
     *,
     out: Annotated[Path, typer.Option("--out", "-o", help="Page that is written.")] = Path("walks.html"),
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress on stderr.")] = False,
@@ -180,5 +180,4 @@ def _show(spec: "DatasetSpec", walk: int) -> None:
 def _check_installed() -> None:
     if find_spec("pyarrow") is None:
         raise InputError("datasets need pyarrow: pip install 'elbowroom[dataset]'")
-    if find_spec("coal") is None:
-        raise InputError("datasets are judged by coal: pip install 'elbowroom[judge]'")
+    check_judge()

@@ -23,7 +23,9 @@ EXAMPLES = (
 def film(
     recording: Annotated[Path, typer.Argument(help="A file written by `elbowroom walk --record`.")],
     *,
-    output: Annotated[Path, typer.Option("--output", "-o", help="The film: .mp4, .webm, .gif, or a .png sheet.")],
+    output: Annotated[
+        Path, typer.Option("--out", "--output", "-o", help="The film: .mp4, .webm, .gif, or a .png sheet.")
+    ],
     camera: Annotated[str, typer.Option(help=f"From where: {', '.join(CAMERAS)}.")] = "side",
     size: Annotated[str, typer.Option(help="Width and height in pixels.")] = "1280x720",
     fps: Annotated[float | None, typer.Option(help="Pictures a second: 30, of a GIF 15.")] = None,

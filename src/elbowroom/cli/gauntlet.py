@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
 import typer
 
 from elbowroom.cli.gauntlet_place import Pieces, PlaceFile, chosen_place
-from elbowroom.cli.options.arguments import check_arguments, check_folder
+from elbowroom.cli.options.arguments import check_arguments, check_folder, check_judge
 from elbowroom.cli.options.avatar import Avatar, Bones, Height, IncludeHair, chosen_avatar, settings_by
 from elbowroom.cli.options.place import Drop, GroundHeight, Passable, Scale, UpAxis, open_scene, place_options
 from elbowroom.cli.options.workers import Cluster, Jobs, check_workers, chosen_workers
@@ -44,7 +44,7 @@ def gauntlet(
     *,
     level: Annotated[int, typer.Option(help="Difficulty, 1 to 5.")] = 1,
     courses: Annotated[int, typer.Option(help="How many courses; course K has the seed S + K.")] = 20,
-    seed: Annotated[int, typer.Option(help="S, the seed of course 0.")] = 0,
+    seed: Annotated[int, typer.Option(help="Seed of the first course; those after it count up.")] = 0,
     place: PlaceFile = None,
     pieces: Pieces = None,
     scale: Scale = None,
@@ -84,6 +84,8 @@ def gauntlet(
     check_arguments(planners=[planner], queues=[queue], level=level, files=[avatar, bones, place])
     check_folder(out)
     check_workers(cluster, jobs)
+    if judge:
+        check_judge()
     furnished = chosen_place(place, pieces, place_options(scale, up, ground, drop, passable), shapes=shapes)
     walker = _Walker(avatar, bones, height, include_hair)
     walker.check()

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from elbowroom.cli.options import clips as clip_options
-from elbowroom.cli.options.arguments import check_arguments
+from elbowroom.cli.options.arguments import check_arguments, check_judge
 from elbowroom.cli.options.avatar import Avatar, Bones, Height, IncludeHair, settings_by
 from elbowroom.cli.options.controller import chosen_controller
 from elbowroom.cli.options.going import told_place
@@ -56,7 +56,7 @@ def tour(
     json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress on stderr.")] = False,
 ) -> None:
-    """Visit random places of a scene on foot.
+    """Visit random places of a scene on foot; what was shown is judged by coal (the extra `judge`).
 
     Exit code 0: all were reached and nothing was touched, 1: not.
     """
@@ -64,6 +64,8 @@ def tour(
         raise InputError(f"--targets: {targets} is not between 1 and {MOST_TARGETS}")
     check_arguments(scenes=[scene], planners=[planner], queues=[queue], files=[avatar, bones], written=[record, plan])
     check_arguments(clips=clip_options.named_by(swing, dodge))
+    if judge:
+        check_judge()
     told, reading = place_options(scale, up, ground, drop, passable), settings_by(bones, height, include_hair)
     settings = CrossingSettings(planner, queue, seed)
     motions = clip_options.motions_by(swing, dodge, clip_options.told_by(None, None, None), style)

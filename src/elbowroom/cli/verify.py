@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from elbowroom.cli.options.arguments import check_arguments
+from elbowroom.cli.options.arguments import check_arguments, check_judge
 from elbowroom.cli.telling.first_run import compile_first
 from elbowroom.cli.telling.output import print_json, print_row
 from elbowroom.cli.telling.spoken import said
@@ -39,6 +39,7 @@ def verify(
     Exit code 0: nothing touches, 1: something does.
     """
     check_arguments(files=[recording, avatar])
+    check_judge()
     settings = JudgeSettings(rate=rate, mesh=mesh)
     from elbowroom.control.recordings.recording import Recording
     from elbowroom.experiment.judge.motion import ShownMotion

@@ -16,9 +16,9 @@ EXAMPLES = "Examples:  elbowroom bench collision  |  elbowroom bench collision -
 def collision(
     *,
     postures: Annotated[int, typer.Option(help="Postures of an arm of three capsules.")] = 10_000,
-    boxes: Annotated[int, typer.Option(help="Boxes round it.")] = 6,
+    boxes: Annotated[int, typer.Option(help="How many boxes stand round the avatar.")] = 6,
     rounds: Annotated[int, typer.Option(help="Times that each library runs; the median counts.")] = 7,
-    seed: Annotated[int, typer.Option(help="Of the random postures and boxes.")] = 7,
+    seed: Annotated[int, typer.Option(help="Seed of the random postures and boxes.")] = 7,
     mesh: Annotated[bool, typer.Option("--mesh", help="Against a mesh of 100,000 triangles.")] = False,
     json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress on stderr.")] = False,

@@ -14,7 +14,7 @@ EXAMPLES = "Examples:  elbowroom bench crowd  |  elbowroom bench crowd --avatars
 def crowd(
     *,
     avatars: Annotated[str, typer.Option(help="Sizes of the crowds.")] = "1,10,100",
-    seconds: Annotated[float, typer.Option(help="That each crowd is measured.")] = 2.4,
+    seconds: Annotated[float, typer.Option(help="Seconds for which each crowd is measured.")] = 2.4,
     json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress on stderr.")] = False,
 ) -> None:

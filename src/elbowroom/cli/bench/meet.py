@@ -26,7 +26,7 @@ def meet(
     starts: Annotated[
         int, typer.Option(help="Meetings in each corridor, of each kind; meeting K has the seed S + K.")
     ] = 20,
-    seed: Annotated[int, typer.Option(help="S, the seed of meeting 0.")] = 0,
+    seed: Annotated[int, typer.Option(help="Seed of the first meeting; those after it count up.")] = 0,
     live: Annotated[
         bool, typer.Option("--live", help="Plan beside playback, as a session does; meetings do not repeat exactly.")
     ] = False,

@@ -20,7 +20,7 @@ def plan(
     *,
     scene: Annotated[str, typer.Option(help="The scene that is crossed.")] = "d",
     key_frames: Annotated[int, typer.Option(help="Key frames ahead, 0.15 s apart.")] = 12,
-    rounds: Annotated[int, typer.Option(help="Crossings.")] = 20,
+    rounds: Annotated[int, typer.Option(help="How many crossings are walked.")] = 20,
     starts: Annotated[int, typer.Option(help="Further crossings, each from another start.")] = 20,
     plots: Annotated[Path | None, typer.Option(help="Folder for pictures of how the cost grows.")] = None,
     json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,

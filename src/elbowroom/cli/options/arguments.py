@@ -2,6 +2,7 @@
 
 import os
 from collections.abc import Collection, Iterable
+from importlib.util import find_spec
 from pathlib import Path
 
 from elbowroom.errors import InputError
@@ -55,6 +56,12 @@ def check_file(file: Path) -> None:
             pass
     except OSError as error:
         raise InputError(f"{file}: cannot be read: {error.strerror}") from None
+
+
+def check_judge() -> None:
+    """Raises `InputError` where the library that judges is not installed, before anything is walked to be judged."""
+    if find_spec("coal") is None:
+        raise InputError("the judge needs the collision library coal: pip install 'elbowroom[judge]'")
 
 
 def check_folder(folder: Path | None) -> None:

@@ -13,7 +13,9 @@ if TYPE_CHECKING:
 
 Vmc = Annotated[str | None, typer.Option("--vmc", help="Send the motion by VMC to HOST:PORT.", metavar="HOST:PORT")]
 VmcRoot = Annotated[str, typer.Option("--vmc-root", help="What carries the way there: root, or hips.")]
-VmcBundles = Annotated[bool, typer.Option("--vmc-bundles/--no-vmc-bundles", help="Off: each message by itself.")]
+VmcBundles = Annotated[
+    bool, typer.Option("--vmc-bundles/--no-vmc-bundles", help="All of a frame in one bundle; off: message by message.")
+]
 
 
 def check_vmc(address: str | None, root: str) -> None:

@@ -15,7 +15,7 @@ from elbowroom.planning.names import BUILT_IN
 
 PLANNER_HELP = f"How upper-body motion is searched: {' or '.join(BUILT_IN)}."
 
-QUEUE_HELP = "Size of the key-frame queue, |Q|: 2 to 32; the paper has 3 to 7."
+QUEUE_HELP = "How many key frames are planned ahead (the queue's size, |Q|): 2 to 32; the paper has 3 to 7."
 
 SCENE_HELP = (
     "A scene by name (a, b, c, d, beam, doorway, traffic, shapes, empty), a course (gauntlet:5:1013), a scene file, "
