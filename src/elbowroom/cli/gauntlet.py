@@ -13,7 +13,15 @@ from elbowroom.cli.options.avatar import Avatar, Bones, Height, IncludeHair, cho
 from elbowroom.cli.options.place import Drop, GroundHeight, Passable, Scale, UpAxis, open_scene, place_options
 from elbowroom.cli.options.workers import Cluster, Jobs, check_workers, chosen_workers
 from elbowroom.cli.telling.first_run import compile_first
-from elbowroom.cli.telling.output import PLANNER_HELP, QUEUE_HELP, json_text, print_json, print_row, progress_bar
+from elbowroom.cli.telling.output import (
+    PLANNER_HELP,
+    QUEUE_HELP,
+    json_text,
+    print_json,
+    print_row,
+    progress_bar,
+    write_text,
+)
 from elbowroom.cli.telling.time_left import time_left_bar
 from elbowroom.errors import InputError
 from elbowroom.experiment.gauntlet.trial_settings import TrialSettings
@@ -137,7 +145,7 @@ def _walk_all(
     summary = GauntletSummary.of(results)
     document = _document(gauntlet, workers.at_once, summary) | {"without_course": list(without)} | _trials(results)
     if out is not None:
-        _write(out / f"gauntlet-{gauntlet.name}.json", json_text(document) + "\n")
+        write_text(out / f"gauntlet-{gauntlet.name}.json", json_text(document) + "\n")
     print_json(document) if json else _print(gauntlet, summary)
     if without:
         typer.echo(f"elbowroom: {missing}; the figures are of the others", err=True)
@@ -193,15 +201,8 @@ def _course(gauntlet: "Gauntlet", walker: _Walker, k: int, quiet: bool) -> "Scen
 
 
 def _save(course: "Scene", path: Path) -> None:
-    _write(path, json_text(course.to_dict()) + "\n")
+    write_text(path, json_text(course.to_dict()) + "\n")
     print(f"{path}: {course.title}")
-
-
-def _write(path: Path, text: str) -> None:
-    try:
-        path.write_text(text, "utf-8")
-    except OSError as error:
-        raise InputError(f"{path}: cannot be written ({error.strerror})") from None
 
 
 def _show(course: "Scene", gauntlet: "Gauntlet", walker: _Walker) -> None:
@@ -209,7 +210,7 @@ def _show(course: "Scene", gauntlet: "Gauntlet", walker: _Walker) -> None:
 
     with TemporaryDirectory() as folder:
         path = Path(folder) / f"{course.name}.json"
-        _write(path, json_text(course.to_dict()))
+        write_text(path, json_text(course.to_dict()))
         play(
             host="127.0.0.1",
             port=8765,

@@ -9,7 +9,7 @@ import typer
 from elbowroom.cli.options.arguments import check_arguments, check_folder
 from elbowroom.cli.options.workers import Cluster, Jobs, check_workers, chosen_workers
 from elbowroom.cli.telling.first_run import compile_first
-from elbowroom.cli.telling.output import json_text, print_json, progress_bar
+from elbowroom.cli.telling.output import json_text, print_json, progress_bar, write_text
 from elbowroom.cli.telling.time_left import time_left_bar
 from elbowroom.errors import InputError
 from elbowroom.experiment.table1.settings import Table1Settings
@@ -71,7 +71,7 @@ def table1(
         out / JSON: json_text(document | trials_document(table)) + "\n",
     }
     for path, text in files.items():
-        _write(path, text)
+        write_text(path, text)
     if json:
         print_json(document | {"files": [str(path) for path in files]})
     else:
@@ -154,10 +154,3 @@ def _command(settings: Table1Settings, processes: int) -> str:
         words["avatar"] = settings.avatar.name
     text = "elbowroom table1 " + " ".join(f"--{name} {value}" for name, value in words.items())
     return text + " --live" if settings.live else text
-
-
-def _write(path: Path, text: str) -> None:
-    try:
-        path.write_text(text, "utf-8")
-    except OSError as error:
-        raise InputError(f"{path}: cannot be written ({error.strerror})") from None

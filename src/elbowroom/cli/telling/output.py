@@ -4,6 +4,7 @@ import json
 import math
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
+from pathlib import Path
 from typing import Any
 
 from rich.console import Console
@@ -11,6 +12,7 @@ from rich.progress import BarColumn, Progress, TaskID, TextColumn, TimeElapsedCo
 from rich.table import Table
 
 from elbowroom.cli.telling.spoken import said
+from elbowroom.errors import InputError
 from elbowroom.planning.names import BUILT_IN
 
 PLANNER_HELP = f"How upper-body motion is searched: {' or '.join(BUILT_IN)}."
@@ -81,3 +83,11 @@ def progress_bar(title: str, total: float | None, quiet: bool) -> Iterator[Bar]:
     columns = (TextColumn("{task.description}"), BarColumn(), TextColumn("{task.fields[note]}"), TimeElapsedColumn())
     with Progress(*columns, console=console, transient=True) as progress:
         yield Bar(progress, progress.add_task(title, total=total, note=""))
+
+
+def write_text(path: Path, text: str) -> None:
+    """Write a text file; raises `InputError` where that cannot be."""
+    try:
+        path.write_text(text, "utf-8")
+    except OSError as error:
+        raise InputError(f"{path}: cannot be written ({error.strerror})") from None

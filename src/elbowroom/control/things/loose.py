@@ -129,9 +129,8 @@ def _slower(velocity: Floats) -> Iterator[Floats]:
     """A velocity, slower ones, those along x and z alone, and at last none."""
     for share in _SHARES:
         yield share * velocity
-    if velocity.all():
-        yield np.array([velocity[0], 0.0])
-        yield np.array([0.0, velocity[1]])
+    yield np.array([velocity[0], 0.0])
+    yield np.array([0.0, velocity[1]])
     yield np.zeros(2)
 
 
