@@ -140,20 +140,11 @@ class UpperBodySearch:
         if free is not None:
             self.margins = self.problem.required
             return free
-        found, last = self.apart(), self.problem.last
+        found = self.apart()
         if found.failed is not None and not again:
             return None
-        waist_has_way = self._waist is not None and self._waist.path.reached == self.path.horizon
-        failed = found.failed is not None
-        if last is not None and waist_has_way and (failed or jolts(found.keys, last.keys, last.known)):
-            previous = self.with_previous_waist()
-            if found.failed is not None or (
-                previous.failed is None and self._cost(previous) <= self._cost(found) + _JOLT
-            ):
-                found = previous
-        if found.failed is not None and last is None and waist_has_way:
-            held = self.with_waist_held()
-            found = held if held.failed is None else found
+        if self._waist is not None and self._waist.path.reached == self.path.horizon:
+            found = self._under_another_waist(found)
         if found.failed is not None and rounds > 0:
             found = self.together(rounds)
         if found.failed is not None:
@@ -161,6 +152,20 @@ class UpperBodySearch:
         self.margins = self._margins(found)
         evidence, joint = self.evidence_log.evidence(), self.evidence_log.joint
         return LocalPlan(PlanStatus.FOUND, found.keys, found.goals, evidence, joint, velocities=found.velocities)
+
+    def _under_another_waist(self, found: GroupPaths) -> GroupPaths:
+        """What was found, or what is better under the last plan's waist, or where there is none one that is held."""
+        last = self.problem.last
+        if last is None:
+            held = found if found.failed is None else self.with_waist_held()
+            return held if held.failed is None else found
+        if found.failed is None and not jolts(found.keys, last.keys, last.known):
+            return found
+        previous = self.with_previous_waist()
+        if found.failed is not None:
+            return previous
+        gives_way = previous.failed is None and self._cost(previous) <= self._cost(found) + _JOLT
+        return previous if gives_way else found
 
     def _margins(self, found: GroupPaths) -> RequiredMargins:
         """The clearances that were asked for: less where the start has less."""
