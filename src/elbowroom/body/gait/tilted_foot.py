@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.soles import PITCHES
-from elbowroom.jit import helper, inner_kernel
+from elbowroom.jit import helper, inner_kernel, kernel
 
 Floats = NDArray[np.float64]
 
@@ -21,16 +21,30 @@ _FIRST, _STEP = float(PITCHES[0]), float(PITCHES[1] - PITCHES[0])  # radians
 _LAST = len(PITCHES) - 1.0 - 1e-9  # steps
 
 
+@helper
+def _average(leg: Floats, pitch: float, gentle: float) -> tuple[float, float, float]:
+    """How far the ankle of an average foot on the ground is ahead of where it is flat, and how high, at a pitch.
+
+    Heel and ball change places as gently as that says; and of how much of the sine of its pitch the toes are down.
+    """
+    sine, cosine = np.sin(pitch), np.cos(pitch)
+    size = np.sqrt(sine * sine + gentle)
+    toes_down, toes_up = 0.5 * (size + sine), 0.5 * (size - sine)  # of these the sine is made
+    pivot, over = (leg[_BALL], 1.0 - cosine) if pitch > 0.0 else (-leg[_HEEL], 0.0)
+    along = leg[_ANKLE + 1] * sine - leg[_TOES] * toes_down + pivot * (1.0 - cosine)
+    height = leg[_ANKLE + 1] * cosine + leg[_BALL] * toes_down + leg[_HEEL] * toes_up + leg[_TOES] * over
+    return along, height, toes_down
+
+
+@kernel
 def rolled(leg: Floats, pitch: Floats) -> tuple[Floats, Floats]:
     """How far (F,) the ankle of a pitched foot on the ground is ahead of where it is flat, and how high it is.
 
     Of average feet with that ball and heel, as `tilt_foot` has them where no foot swings; `leg` is a row of legs.
     """
-    sine, cosine = np.sin(pitch), np.cos(pitch)
-    down, up = np.maximum(sine, 0.0), np.maximum(-sine, 0.0)
-    pivot, over = np.where(pitch > 0.0, leg[_BALL], -leg[_HEEL]), np.where(pitch > 0.0, 1.0 - cosine, 0.0)
-    along: Floats = leg[_ANKLE + 1] * sine - leg[_TOES] * down + pivot * (1.0 - cosine)
-    height: Floats = leg[_ANKLE + 1] * cosine + leg[_BALL] * down + leg[_HEEL] * up + leg[_TOES] * over
+    along, height = np.empty(len(pitch)), np.empty(len(pitch))
+    for i in range(len(pitch)):
+        along[i], height[i], _ = _average(leg, pitch[i], 0.0)
     return along, height
 
 
@@ -73,18 +87,12 @@ def tilt_foot(
     It turns about its ball or its heel, as gently as `ease_of` its swing says.
     """
     (x, z, yaw), (pitch, lift), (gentle, relaxed) = place, roll, ease
-    height, above = legs[side, _ANKLE + 1], legs[side, _TOES]
     pitch *= legs[side, _PITCH_DOWN] if pitch > 0.0 else legs[side, _PITCH_UP]
-    sine, cosine = np.sin(pitch), np.cos(pitch)
-    size = np.sqrt(sine * sine + gentle)
-    toes_down, toes_up = 0.5 * (size + sine), 0.5 * (size - sine)  # of these the sine is made
-    pivot = legs[side, _BALL] if pitch > 0.0 else -legs[side, _HEEL]
+    along, height, toes_down = _average(legs[side], pitch, gentle)
     farther, higher = _own_way(legs[side], pitch)
-    along = height * sine - above * toes_down + pivot * (1.0 - cosine) + farther
-    over_toes = above * (1.0 - cosine) if pitch > 0.0 else 0.0
-    out[0] = x + along * np.sin(yaw)
-    out[1] = height * cosine + legs[side, _BALL] * toes_down + legs[side, _HEEL] * toes_up + over_toes + higher + lift
-    out[2] = z + along * np.cos(yaw)
+    out[0] = x + (along + farther) * np.sin(yaw)
+    out[1] = height + higher + lift
+    out[2] = z + (along + farther) * np.cos(yaw)
     out[3] = yaw
     out[4] = pitch
     out[5] = -np.arcsin(min(toes_down, 1.0)) * (1.0 - relaxed * legs[side, _HANG])

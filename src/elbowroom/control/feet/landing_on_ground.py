@@ -28,6 +28,8 @@ NO_GROUND = -math.inf  # the height of no ground
 _AIR, _SHIFT, _TRIED = 0.02, 0.015, 8  # metres under ankle and ball; metres by which a foot lands elsewhere, so often
 _LEVEL, _HOLLOW = 0.02, 0.006  # radians: less is level; metres under a heel
 _PLACES = 8  # from ankle to ball
+# How well a foot stands: on ankle and ball, on its ball, with so many of these places and more in the air, or nowhere.
+_WHOLE, _ON_BALL, _IN_AIR, _NOWHERE = 0, 1, 2, _PLACES + 4
 _BALL, _HEEL = 6, 7  # columns of `GaitShape.legs`
 
 
@@ -71,28 +73,35 @@ def _in_air(under: Underfoot, row: Floats, foot: Place, ball: float, lie: Lie) -
     return count
 
 
+@helper
+def _rank(under: Underfoot, row: Floats, foot: Place, ball: float, heel: float) -> tuple[int, Lie]:
+    """How well a foot would stand at a place, less is better; and how it would lie."""
+    back, front, lie = _bears(under, row, foot, ball, heel)
+    if lie[0] <= NO_GROUND:
+        return _NOWHERE, lie
+    if front:
+        return _WHOLE if back else _ON_BALL, lie
+    return _IN_AIR + _in_air(under, row, foot, ball, lie), lie
+
+
 @inner_exact_kernel
-def _farther_onto(under: Underfoot, who: Stepper, row: Floats, side: int, goal: Place) -> tuple[float, Lie]:
+def farther_onto(under: Underfoot, who: Stepper, row: Floats, side: int, goal: Place) -> tuple[float, Lie]:
     """How much farther ahead a foot has to land so that it stands on a tread and not across its edge, metres.
 
     As little as possible. Where that is not had within a few centimetres it stands on its ball, over which it rolls;
     where it does not do so either, as little of it as can be is in the air. And how it lies there.
     """
     ball, heel, scale = who.legs[side, _BALL], who.legs[side, _HEEL], who.scale
-    onto_ball, lie, fewest, least, lies = math.inf, (NO_GROUND, 0.0), _PLACES + 2, 0.0, (NO_GROUND, 0.0)
+    best, farther, lies = _NOWHERE, 0.0, (NO_GROUND, 0.0)
     for k in range(2 * _TRIED + 1):
         ahead = _SHIFT * scale * ((k + 1) // 2) * (1.0 if k % 2 == 0 else -1.0)
         place = goal[0] + ahead * math.sin(goal[2]), goal[1] + ahead * math.cos(goal[2]), goal[2]
-        back, front, there = _bears(under, row, place, ball, heel)
-        if back and front:
-            return float(ahead), there
-        if front and onto_ball == math.inf:
-            onto_ball, lie = float(ahead), there
-        if onto_ball == math.inf and there[0] > NO_GROUND:
-            count = _in_air(under, row, place, ball, there)
-            if count < fewest:
-                fewest, least, lies = count, float(ahead), there
-    return (onto_ball, lie) if onto_ball < math.inf else (least, lies)
+        rank, lie = _rank(under, row, place, ball, heel)
+        if rank < best:
+            best, farther, lies = rank, ahead, lie
+        if best == _WHOLE:
+            break
+    return float(farther), lies
 
 
 @helper
@@ -113,7 +122,7 @@ def set_landings(
             left = max(time_to_landing(own, legs, stride, side, row, foot, twin, 0.0), 0.0)
             x, z, yaw = landing_place(who, side, row, twin, coming, left, 0.0, later)
             if level_there(under, row, foot, (x, z, yaw)) == NO_GROUND:
-                lands[side, FARTHER], (height, slope) = _farther_onto(under, who, row, side, (x, z, yaw))
+                lands[side, FARTHER], (height, slope) = farther_onto(under, who, row, side, (x, z, yaw))
                 apart = math.hypot(x - twin[X], z - twin[Z])
                 falls = before[at] + before[HEIGHT] - height - math.tan(max(slope, 0.0)) * apart
                 lands[side, LOWER] = falls if height > NO_GROUND else 0.0

@@ -3,11 +3,17 @@
 from collections.abc import Callable
 from functools import cached_property
 
+import numpy as np
+from numpy.typing import NDArray
+
 from elbowroom.body.gait.living import lively
 from elbowroom.control.feet.feet import Moment
 from elbowroom.control.feet.following import STEPS, Followed, Gaps
 from elbowroom.control.key_frame_queue import Playback
 
+Floats = NDArray[np.float64]
+
+_ASKED = 0.01  # metres: more room about legs is not told apart
 NOT_AT_ALL = -1.0  # metres of room in which hips are where they were planned at once
 
 Following = Callable[[Moment, Playback, int], Followed]  # how a pose is followed in a moment, in one of the ways
@@ -33,6 +39,10 @@ class Posing:
         if not lively(self.made(STEPS).root):
             return self
         return Posing(self.moment._replace(room=NOT_AT_ALL), self.posed, self._following)
+
+    def room(self, rows: Floats) -> float:
+        """Metres from the legs to what stands along root states (N, WITH_FEET), but for the ground under them."""
+        return self.moment.room_along(rows, self.posed.upper, _ASKED)
 
     def gaps(self, pose: Playback) -> Gaps | None:
         """How much nearer arms may come to legs in a pose, if it is one that was made, arms as they were."""

@@ -35,7 +35,6 @@ from elbowroom.control.key_frame_queue import Playback
 Floats = NDArray[np.float64]
 
 _ROOM = 0.10  # metres about the legs in which feet step as they like
-_ASKED = 0.01  # metres: more room about legs is not told apart
 CLEAR = 0.004  # metres about the legs that have to stay, where there are less, as far ahead as is known
 _NO_CLEARER = 0.0005  # metres: feet that stand do not glide to have so much more about legs
 _FORESEEN = 0.75  # seconds that are looked ahead
@@ -88,8 +87,9 @@ class Stepping:
         """
         alive = self._posing(moment._replace(ahead=UNKNOWN), held)
         steps = alive.made(STEPS)
-        around = alive.moment.look(steps.root, held.upper, steps.axes)
-        roomy = around.room >= _ROOM or self._is_clear(alive.moment, steps, held)
+        roomy = alive.moment.look(steps.root, held.upper, steps.axes).room >= _ROOM
+        # Where ground is not plain that is what is about legs, the ground under them too.
+        roomy = roomy or (not self._footing.plain and alive.room(steps.root[None, :WITH_FEET]) >= CLEAR)
         stays: list[Playback] = []
         for it, pose in self._all_ways(alive, (STEPS, GLIDES) if roomy else (GLIDES, STEPS)):
             made_way = pose.upper is not held.upper
@@ -111,7 +111,7 @@ class Stepping:
         if around.room < _ROOM and not around.lasts:
             after = it.made(GLIDES)
         elif around.room < _ROOM:
-            after = self._clearest(it, lambda rows: moment.room_along(rows, posed.upper, _ASKED))
+            after = self._clearest(it, it.room)
         if after.trunk < _FOLDED and after is it.made(STEPS):
             after = self._clearest(it, lambda rows: self._trunk.room(rows, posed.upper))
         upper = self._arms.apart(after.root, posed.upper, after.gaps)
@@ -247,11 +247,6 @@ class Stepping:
         """A root state (ROOT_STATE or more,) with what the feet of the walking cycle stand on (ROOT_STATE,)."""
         stood: Floats = self._footing.stood(root[None, :ROOT_STATE])[0][0]
         return stood
-
-    def _is_clear(self, moment: Moment, after: Followed, posed: Playback) -> bool:
-        """Whether legs are clear of what is near, but for the ground under them, where that is not plain."""
-        legs = after.root[None, :WITH_FEET]
-        return not self._footing.plain and moment.room_along(legs, posed.upper, _ASKED) >= CLEAR
 
     def _clearest(self, it: Posing, room: Callable[[Floats], float]) -> Followed:
         """A pose on feet that step, if legs stay clear as they step on, by the `room` along root states (N, WITH_FEET).

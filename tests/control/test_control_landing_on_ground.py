@@ -1,0 +1,69 @@
+"""Where a foot lands that would land across an edge: on the tread, on its ball, or with little of it in the air."""
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from elbowroom.body.gait.landing_places import Stepper
+from elbowroom.body.gait.own_steps import CYCLE
+from elbowroom.body.humanoid import Humanoid
+from elbowroom.body.pose.kinematics import body_model
+from elbowroom.body.root import WITH_FEET
+from elbowroom.control.feet.landing_on_ground import Lie, Place, farther_onto
+from elbowroom.jit import exact_kernel
+from elbowroom.planning.model.footing import Footing, Underfoot
+from elbowroom.world.scene import Scene
+from feet_walks import GAIT
+
+Floats = NDArray[np.float64]
+
+LEFT, BALL, RISE, TRIED = 0, 6, 0.1, 0.12  # side; column of the gait's legs; metres
+WHO = Stepper(GAIT.legs, GAIT.scale, CYCLE)
+
+
+@exact_kernel
+def farther(under: Underfoot, who: Stepper, row: Floats, side: int, goal: Place) -> tuple[float, Lie]:
+    """The kernel, for who calls it from Python."""
+    return farther_onto(under, who, row, side, goal)
+
+
+def landed(begin: float, length: float, z: float) -> tuple[float, float]:
+    """How much farther ahead a left foot lands that would at `z`, where a block lies so; and how high."""
+    block: dict[str, Any] = {
+        "type": "box",
+        "center": [0.0, 0.5 * RISE, begin + 0.5 * length],
+        "size": [1.8, RISE, length],
+    }
+    ground = Scene.of("block", [block], finish=(0.0, 9.0)).ground
+    under, row = Footing(body_model(Humanoid.default()), ground).underfoot, np.zeros(WITH_FEET)
+    ahead, (height, _) = farther(under, WHO, row, LEFT, (float(GAIT.legs[LEFT, 3]), z, 0.0))
+    return ahead, height
+
+
+def test_a_foot_that_stands_whole_lands_where_it_would() -> None:
+    ahead, height = landed(0.5, 1.0, 1.0)
+    assert abs(ahead) < 1e-9
+    assert math.isclose(height, RISE)
+
+
+@pytest.mark.parametrize("over", [-0.05, 0.05])
+def test_a_foot_across_an_edge_lands_as_little_farther_as_it_has_to(over: float) -> None:
+    """Its ankle just behind the far edge goes back onto the block, its ball just before the near one goes ahead."""
+    begin, length, ball = 0.5, 0.6, float(GAIT.legs[LEFT, BALL])
+    edge = begin + length - ball if over > 0.0 else begin
+    ahead, height = landed(begin, length, edge + over)
+    assert math.isclose(height, RISE)
+    assert abs(over) - 1e-9 <= abs(ahead) <= abs(over) + 0.03
+    assert ahead * over < 0.0
+
+
+def test_a_foot_on_a_block_shorter_than_itself_stands_on_its_ball() -> None:
+    begin, length, ball = 0.5, 0.06, float(GAIT.legs[LEFT, BALL])
+    for z in np.linspace(begin - ball - 0.08, begin + length - ball + 0.08, 9):
+        ahead, height = landed(begin, length, float(z))
+        assert abs(ahead) <= TRIED * GAIT.scale + 1e-9
+        if math.isclose(height, RISE):
+            assert begin <= z + ahead + ball <= begin + length
