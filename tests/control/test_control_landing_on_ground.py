@@ -20,7 +20,7 @@ from feet_walks import GAIT
 
 Floats = NDArray[np.float64]
 
-LEFT, BALL, RISE, TRIED = 0, 6, 0.1, 0.12  # side; column of the gait's legs; metres
+LEFT, BALL, RISE, TRIED, TOES = 0, 6, 0.1, 0.18, 0.03  # side; column of the gait's legs; metres
 WHO = Stepper(GAIT.legs, GAIT.scale, CYCLE)
 
 
@@ -51,9 +51,9 @@ def test_a_foot_that_stands_whole_lands_where_it_would() -> None:
 
 @pytest.mark.parametrize("over", [-0.05, 0.05])
 def test_a_foot_across_an_edge_lands_as_little_farther_as_it_has_to(over: float) -> None:
-    """Its ankle just behind the far edge goes back onto the block, its ball just before the near one goes ahead."""
-    begin, length, ball = 0.5, 0.6, float(GAIT.legs[LEFT, BALL])
-    edge = begin + length - ball if over > 0.0 else begin
+    """Where its toes begin is borne by the far edge, its ankle by the near one."""
+    begin, length, front = 0.5, 0.6, float(GAIT.legs[LEFT, BALL]) + TOES * GAIT.scale
+    edge = begin + length - front if over > 0.0 else begin
     ahead, height = landed(begin, length, edge + over)
     assert math.isclose(height, RISE)
     assert abs(over) - 1e-9 <= abs(ahead) <= abs(over) + 0.03

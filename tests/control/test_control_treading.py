@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from elbowroom.body.gait.foot_state import SWING, Z
+from elbowroom.body.gait.foot_state import PITCH, SWING, Z
 from elbowroom.body.gait.gliding import gliding
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.pose.kinematics import lower_body
@@ -114,3 +114,41 @@ def test_feet_that_go_up_and_down_are_set_down(backwards: bool) -> None:
     ]
     assert len(falls) > 10
     assert max(falls) < 0.01, falls
+
+
+def on_a_stair() -> Floats:
+    """What is shown up and down a stair of four treads."""
+    begin, tread, rise, top = 2.0, 0.28, 0.17, 1.2
+    blocks = [
+        {
+            "type": "box",
+            "center": [0.0, 0.5 * rise * (i + 1), begin + 4 * tread + 0.5 * top],
+            "size": [1.8, rise * (i + 1), top + 2 * tread * (4 - i)],
+        }
+        for i in range(4)
+    ]
+    controller, rows = Controller(AVATAR, Scene.of("stair", blocks, finish=(0.0, 8.0))), []
+    while controller.root.z < begin + 8 * tread + top:
+        rows.append(controller.step(ASKED[0], FRAME).root)
+    return np.array(rows)
+
+
+def in_world(rows: Floats, side: int, at: int) -> Floats:
+    """A place (N, 2) that the state of a foot tells of, in the world; roots face ahead."""
+    first = ROOT_STATE + FOOT * side + at
+    places: Floats = rows[:, :2] + rows[:, first : first + 2]
+    return places
+
+
+def test_a_foot_whose_heel_hangs_over_an_edge_comes_down_flat() -> None:
+    """It would turn about a heel in the air, and slide."""
+    begin, tread, hangs, stair = 2.0, 0.28, 0, on_a_stair()
+    for side in range(2):
+        feet = stair[:, ROOT_STATE + FOOT * side :][:, :FOOT]
+        heights, places = stair[:, HEIGHT] + stair[:, RISES + 2 * side], in_world(stair, side, 0)[:, 1]
+        for foot, height, z in zip(feet, heights, places, strict=True):
+            edge = begin + tread * (round(height / 0.17) - 1)
+            if foot[SWING] <= 0.0 < height and z < begin + 4 * tread and z - GAIT.legs[side, HEEL] < edge - 0.01:
+                assert foot[PITCH] > -0.02
+                hangs += 1
+    assert hangs > 20

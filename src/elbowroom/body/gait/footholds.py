@@ -15,8 +15,10 @@ from elbowroom.body.gait.cycle import GaitShape, home_of
 from elbowroom.body.gait.foot_state import PITCH, ROLLING, SWING, Goal, X, Z, carry, eased, is_flat
 from elbowroom.body.gait.landing_places import (
     FARTHER,
+    LANDS,
     LOWER,
     Stepper,
+    borne_pitch,
     bound_for,
     landing_place,
     place_under,
@@ -47,7 +49,7 @@ _LAST, _MOMENT = 1.0 - 1e-9, 1e-4  # of a stance; of the cycle, over which it is
 _ROLLS = 25.0  # 1/s: how soon what a foot that stands is pitched beside its cycle fades
 _NEARLY_AT_REST = 0.3  # m/s of a standard leg: who goes slower may be about to stop, and keeps his heels down
 
-ON_THE_PLANE = np.zeros((2, 2))  # how feet land there, `FARTHER` and `LOWER`
+ON_THE_PLANE = np.zeros((2, LANDS))  # how feet land there
 UNKNOWN = np.empty((0, 1 + ROOT_STATE))  # nothing is known of where the root will come
 
 
@@ -63,23 +65,28 @@ def _beside(legs: Floats, scale: float, root: Floats, out: Floats) -> None:
 
 
 @helper
-def _pitch_at(own: OwnSteps, stride: Stride, side: int, u: float, pace: float) -> Goal:
-    """Pitch of the cycle at a place in its stance, and how fast it changes where that goes on at a pace, 1/s."""
+def _pitch_at(own: OwnSteps, stride: Stride, side: int, u: float, pace: float, lands: Floats) -> Goal:
+    """Pitch of the cycle at a place in its stance, and how fast it changes where that goes on at a pace, 1/s.
+
+    Of a foot that `lands` (LANDS,) so.
+    """
     first = min(u, stride.duty * _LAST - _MOMENT)
     before, _ = own_roll(own, stride, side, max(first, 0.0))
     after, _ = own_roll(own, stride, side, max(first, 0.0) + _MOMENT)
     pitch, _ = own_roll(own, stride, side, u)
-    return pitch, pace * (after - before) / _MOMENT
+    return borne_pitch(lands, pitch), pace * (borne_pitch(lands, after) - borne_pitch(lands, before)) / _MOMENT
 
 
 @helper
-def _roll_in_stance(own: OwnSteps, legs: Floats, stride: Stride, side: int, foot: Floats, dt: float) -> None:
+def _roll_in_stance(
+    own: OwnSteps, legs: Floats, stride: Stride, side: int, foot: Floats, dt: float, lands: Floats
+) -> None:
     """Roll a standing foot by how far the root has passed it; flat under who comes to rest."""
     goes = min(stride.speed * stride.speed / (_NEARLY_AT_REST * _NEARLY_AT_REST * stride.scale), 1.0)
     u, most = 0.5 * stride.duty + goes * passed_ago(own, legs, stride, side, foot) / stride.period, stride.duty * _LAST
     then, later = min(max(u - goes * dt / stride.period, 0.0), most), min(max(u, 0.0), most)
     pace = goes / stride.period
-    was, now = _pitch_at(own, stride, side, then, pace), _pitch_at(own, stride, side, later, pace)
+    was, now = _pitch_at(own, stride, side, then, pace, lands), _pitch_at(own, stride, side, later, pace, lands)
     foot[PITCH], foot[ROLLING] = eased((foot[PITCH], foot[ROLLING]), was, now, _ROLLS, dt)
 
 
@@ -90,7 +97,7 @@ def step_feet(
     """The feet `dt` seconds later: `out` (WITH_FEET,) is for `root` (7,) what `before` (WITH_FEET,) was then.
 
     They step to where the root is meant to come: `coming` (m, 8), seconds from now and root states; where nothing is
-    known of that it keeps its velocities; and as it `lands` (2, 2) there, columns `FARTHER` and `LOWER`. With `dt` 0
+    known of that it keeps its velocities; and as it `lands` (2, LANDS) there, see `landing_places`. With `dt` 0
     nothing moves over the ground, a swinging foot neither.
     """
     legs, scale, own = who.legs, who.scale, who.own
@@ -114,7 +121,7 @@ def step_feet(
             since = dt
             if lifted == side:
                 since = lifted_since(stride, side, root, dt)
-                _roll_in_stance(own, legs, stride, side, foot, dt - since)
+                _roll_in_stance(own, legs, stride, side, foot, dt - since, lands[side])
             left = max(time_to_landing(own, legs, stride, side, root, foot, twin, since), 0.0)
             until = left if left > 0.0 else -landed_since(stride, side, root, dt)
             farther, way = lands[side, FARTHER], way_over(stride, lands[side, LOWER])
@@ -125,9 +132,9 @@ def step_feet(
                 left, rest = needed, needed / (TO_REST * np.sqrt(scale))
                 goal = landing_place(who, side, root, twin, coming, left, farther, later)
                 foot[SWING] = min(foot[SWING], max(1.0 - rest, 0.2))
-            swing_foot(own, stride, side, goal, (since, left), way, foot, twin)
+            swing_foot(own, stride, side, goal, (since, left), lands[side], foot, twin)
         else:
-            _roll_in_stance(own, legs, stride, side, foot, dt)
+            _roll_in_stance(own, legs, stride, side, foot, dt, lands[side])
 
 
 @inner_exact_kernel
@@ -137,7 +144,7 @@ def landing(
     """Where a foot that swings in a row (WITH_FEET or more,) will land: x, z and yaw seen from the root.
 
     Then in how many seconds, and how many until it is over that place. `coming` (m, 8), seconds from the row, and how
-    it `lands` (2, 2) are as in `step_feet`; `later` (7,) is scratch.
+    it `lands` (2, LANDS) are as in `step_feet`; `later` (7,) is scratch.
     """
     legs, scale, own = who.legs, who.scale, who.own
     foot, twin = row[ROOT_STATE + FOOT * side :], row[ROOT_STATE + FOOT * (1 - side) :]

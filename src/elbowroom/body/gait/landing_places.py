@@ -25,8 +25,10 @@ _SINKS, _FALL = 0.3, 0.1  # of a swing in which a foot only comes down, where it
 _BOUND, _BINDING = 0.75, 0.1  # of a swing: from then on a foot goes on to where it goes, more and more
 _MORE = 0.15  # m/s by which a stance may be longer than that of an even walk
 # Of each foot, how it lands where ground is not a plane: so many metres farther ahead, and so many below the other
-# foot, but for what falls evenly from there.
-FARTHER, LOWER = plain(0), plain(1)
+# foot, but for what falls evenly from there; and whether there, or where it stands, its heel and its ball hang in the
+# air: 0 or 1.
+FARTHER, LOWER, HEEL_HANGS, BALL_HANGS = map(plain, range(4))
+LANDS = 4
 
 
 @by_reference
@@ -127,6 +129,12 @@ def way_over(stride: Stride, lower: float) -> float:
     """
     aside = _DOWN * (1.0 - straight_part(stride))
     return 1.0 - max(aside, _SINKS * min(max(lower, 0.0) / (_FALL * stride.scale), 1.0))
+
+
+@inner_exact_kernel
+def borne_pitch(lands: Floats, pitch: float) -> float:
+    """How far a foot is pitched that is by so much on the plane: not about what hangs in the air (LANDS,)."""
+    return float(pitch * (1.0 - lands[BALL_HANGS if pitch > 0.0 else HEEL_HANGS]))
 
 
 @inner_exact_kernel

@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.gait.foot_state import LIFT, LIFTING, PITCH, ROLLING, SWING, VELOCITY, YAW, Goal, X, Z, eased, land
-from elbowroom.body.gait.landing_places import beside_twin
+from elbowroom.body.gait.landing_places import LOWER, beside_twin, borne_pitch, way_over
 from elbowroom.body.gait.own_steps import OwnSteps, own_detour, own_roll
 from elbowroom.body.gait.roll import least_lift
 from elbowroom.body.gait.stepping_times import TURNING
@@ -45,12 +45,13 @@ def _time_over_ground(
 
 
 @helper
-def _goes(own: OwnSteps, stride: Stride, side: int, w: float, pace: float) -> tuple[Goal, Goal]:
-    """Pitch and lift, each with its rate, when `w` of a swing is over that goes on at a pace, 1/s."""
+def _goes(own: OwnSteps, stride: Stride, side: int, w: float, pace: float, lands: Floats) -> tuple[Goal, Goal]:
+    """Pitch and lift, each with its rate, when `w` of a swing is over that goes on at a pace, 1/s, and `lands` so."""
     rest, first = 1.0 - stride.duty, min(w, 1.0 - _MOMENT)
     before, low = own_roll(own, stride, side, stride.duty + rest * first)
     after, high = own_roll(own, stride, side, stride.duty + rest * (first + _MOMENT))
     low, high = max(low, least_lift(stride, first)), max(high, least_lift(stride, first + _MOMENT))
+    before, after = max(before, borne_pitch(lands, before)), max(after, borne_pitch(lands, after))  # only toes up
     u, pace = (w - first) / _MOMENT, pace / _MOMENT
     return (before + u * (after - before), pace * (after - before)), (low + u * (high - low), pace * (high - low))
 
@@ -62,16 +63,16 @@ def swing_foot(
     side: int,
     goal: tuple[float, float, float],
     times: tuple[float, float],
-    way: float,
+    lands: Floats,
     foot: Floats,
     twin: Floats,
 ) -> None:
     """Let a foot swing for so many seconds, so that it lands so many after their end.
 
-    It is over its place after the part `way` of its swing, before it comes down: it would rub over the ground, in steps
-    aside and round, or over an edge.
+    It `lands` (LANDS,) as in `landing_places`, and is over its place before it comes down: it would rub over the
+    ground, in steps aside and round, or over an edge.
     """
-    (dt, left), done = times, foot[SWING]
+    (dt, left), done, way = times, foot[SWING], way_over(stride, lands[LOWER])
     after = done + (1.0 - done) * dt / (left + dt)
     over, there = min(done / way, 1.0), min(after / way, 1.0)
     before, then = own_detour(own, stride, side, over), own_detour(own, stride, side, there)
@@ -90,7 +91,8 @@ def swing_foot(
     x, z = beside_twin(side, foot[X] - twin[X], foot[Z] - twin[Z], 0.0, stride.scale)
     foot[X], foot[Z], foot[SWING] = twin[X] + x, twin[Z] + z, after
     pace = (1.0 - done) / (left + dt)
-    (pitch, lift), (next_pitch, next_lift) = _goes(own, stride, side, done, pace), _goes(own, stride, side, after, pace)
+    pitch, lift = _goes(own, stride, side, done, pace, lands)
+    next_pitch, next_lift = _goes(own, stride, side, after, pace, lands)
     rolls, lifts = max(_ROLLS, _LANDS / (left + dt)), max(_LIFTS, _LANDS / (left + dt))
     foot[PITCH], foot[ROLLING] = eased((foot[PITCH], foot[ROLLING]), pitch, next_pitch, rolls, dt)
     foot[LIFT], foot[LIFTING] = eased((foot[LIFT], foot[LIFTING]), lift, next_lift, lifts, dt)

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from elbowroom.body.gait.foot_state import RISING, SWING, VELOCITY, YAW, X, Z
 from elbowroom.body.gait.footholds import landing, step_feet
 from elbowroom.body.gait.heels import let_heels_rise
-from elbowroom.body.gait.landing_places import Stepper
+from elbowroom.body.gait.landing_places import LANDS, Stepper
 from elbowroom.body.root import FOOT, HEIGHT, RISES, ROOT_STATE, WITH_FEET
 from elbowroom.control.feet.landing_on_ground import NO_GROUND, Lie, level_there, set_landings
 from elbowroom.jit import helper, inner_exact_kernel
@@ -125,7 +125,7 @@ def step_on(
     To `out` (WITH_FEET or more,). On the plane that is all of it; elsewhere feet that would land across an edge land a
     little farther ahead or back, and heels rise under who climbs.
     """
-    lands, later = np.zeros((2, 2)), np.empty(ROOT_STATE)
+    lands, later = np.zeros((2, LANDS)), np.empty(ROOT_STATE)
     if not under.ground.plain and dt > 0.0:
         set_landings(under, who, before, root, coming, lands, later)
     step_feet(who, before, root, dt, coming, lands, out[:WITH_FEET])
