@@ -1,4 +1,4 @@
-"""How every hot loop is compiled: one place for the Numba options, all of them Numba's public ones.
+"""How every hot loop is compiled: one place for the Numba options, all of them public.
 
 There are three kinds. A `kernel` computes with fast mathematics: for batches of distances. An `exact_kernel` keeps to
 IEEE arithmetic: for searches and state that must repeat bit for bit. A `helper` is inlined into the kernels that call
@@ -13,6 +13,10 @@ for who calls thirty of them in a frame. What takes a frame microseconds keeps i
 
 The options and the habits that go with them were measured: unsigned loop indices (`range(np.uint64(n))`),
 `error_model="numpy"` and `fastmath` are what lets LLVM vectorise; without them the same loop is ten times slower.
+
+Where there is no option, private parts of Numba are used, in three places: a kernel's cache is wrapped here, and its
+call refused where it has no entrance; `kernel_library.py` and `kernel_bitcode.py` say how compiled code is linked and
+kept. So `pyproject.toml` has an upper bound on its version.
 """
 
 import os

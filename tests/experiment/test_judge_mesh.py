@@ -181,7 +181,7 @@ def test_patches_are_never_farther_than_they_seem(wild: bool) -> None:
         for i, patch in enumerate(patches.patches):
             bounds = patches.bounds(i, posed, every, obstacle)
             vertices = SKIN.vertices(posed, patch.vertices)
-            assert patch.carried.vertices(posed, every) == pytest.approx(vertices, abs=1e-9)
+            np.testing.assert_allclose(patch.carried.vertices(posed, every), vertices, atol=1e-9)
             beyond = np.abs(obstacle.seen_from(vertices)) - obstacle.half_size
             true = np.linalg.norm(np.maximum(beyond, 0.0), axis=-1).min(axis=1)
             assert (bounds <= true + 1e-9).all()

@@ -144,7 +144,7 @@ def _eased(turned: float, goal: float, dt: float) -> float:
     """How far the head is turned `dt` seconds later."""
     turn = (goal - turned) * (1.0 - math.exp(-dt / _EASE))
     after = turned + min(max(turn, -_QUICKEST * dt), _QUICKEST * dt)
-    return 0.0 if goal == 0.0 and abs(after) < _STRAIGHT else after
+    return 0.0 if max(abs(goal), abs(after)) < _STRAIGHT else after
 
 
 @inner_exact_kernel
