@@ -114,7 +114,7 @@ def test_without_the_collision_library_one_line_says_what_to_install(
     monkeypatch.setitem(sys.modules, "coal", None)
     result = RUNNER.invoke(app, ["verify", str(clean), "--quiet"])
     assert result.exit_code == 2
-    assert 'pip install "elbowroom[judge]"' in result.stderr
+    assert "pip install 'elbowroom[judge]'" in result.stderr
     assert result.stderr.count("\n") == 1
 
 

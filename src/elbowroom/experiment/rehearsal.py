@@ -15,9 +15,11 @@ from elbowroom.body.gait.footholds import UNKNOWN, beside, onward, settled
 from elbowroom.body.gait.gliding import gliding
 from elbowroom.body.gait.living import body_of, living
 from elbowroom.body.gait.stride import feet_standing, stride_length
+from elbowroom.body.gait.tilted_foot import rolled
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.pose.kinematics import body_model, leg_capsules, lower_body
 from elbowroom.body.root import CARRIAGE, ROOT_STATE, RootState
+from elbowroom.body.soles import PITCHES
 from elbowroom.control.feet.feet_ahead import glides_ahead, steps_ahead
 from elbowroom.control.shown.body_check import BodyCheck, Frames
 from elbowroom.planning.command import Command
@@ -209,9 +211,10 @@ def _one_box(center: tuple[float, ...], half: tuple[float, ...]) -> Obstacles:
 
 
 def rehearse_fit() -> None:
-    """Fit a capsule, as avatars of one's own need many."""
+    """Fit a capsule, as avatars of one's own need many, and roll an average foot."""
     points = np.random.default_rng(0).normal(size=(9, 3))
     slimmest(points, points[0], points[1], Wanted(1.0, 0.0, 9))
+    rolled(body_model(Humanoid.default()).gait.legs[0], PITCHES)
 
 
 def rehearse_mesh() -> None:

@@ -79,7 +79,7 @@ def coal_library() -> Any:
     try:
         import coal
     except ImportError:
-        raise InputError('the judge needs the collision library coal: pip install "elbowroom[judge]"') from None
+        raise InputError("the judge needs the collision library coal: pip install 'elbowroom[judge]'") from None
     return coal
 
 
