@@ -168,6 +168,7 @@ def compilations(folder: Path, **options: object) -> str:
     return subprocess.run(call, env=environment, check=True, capture_output=True, text=True, **options).stdout.strip()  # type: ignore[call-overload,no-any-return]
 
 
+@pytest.mark.long
 def test_a_real_kernel_is_kept_checked_and_made_anew(tmp_path: Path) -> None:
     place = toy(tmp_path)
     assert compilations(tmp_path) == "1"

@@ -261,6 +261,7 @@ def test_real_files_that_are_refused(name: str, words: str) -> None:
         Humanoid.load(SHARED / "avatars" / name)
 
 
+@pytest.mark.long
 @needs_shared
 def test_a_real_avatar_that_needs_meshopt_and_quantisation() -> None:
     assert SHARED is not None

@@ -19,6 +19,7 @@ from elbowroom.body.loading import avatar_file as loading
 from elbowroom.body.loading.avatar_file import load_humanoid_bytes, load_with_surface
 from elbowroom.body.loading.settings import LoadSettings
 from elbowroom.body.stock import stock_avatar_path, stock_fit_path
+from sampled import sampled
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -56,7 +57,7 @@ def test_what_is_stored_holds_the_surface() -> None:
     assert found.worst < 0.03  # of the pelvis in a deep crouch
 
 
-@pytest.mark.parametrize("fitted_anew", [False, True])
+@pytest.mark.parametrize("fitted_anew", sampled([False, True]))
 def test_hands_are_held_as_closely_as_they_pass_things(fitted_anew: bool) -> None:
     """Motions keep 5 mm from obstacles: a knuckle that stands farther out than that may be seen in one."""
     humanoid, surface = load_with_surface(stock_avatar_path())
@@ -71,7 +72,7 @@ def test_hands_are_held_as_closely_as_they_pass_things(fitted_anew: bool) -> Non
         assert np.min([capsule.outside(points) for capsule in hand], axis=0).max() < 0.005
 
 
-@pytest.mark.parametrize("fitted_anew", [False, True])
+@pytest.mark.parametrize("fitted_anew", sampled([False, True]))
 def test_no_vertex_of_the_head_stands_out(fitted_anew: bool) -> None:
     """It is shown a little lower or higher than planned, and passes under things by what is left."""
     humanoid, surface = load_with_surface(stock_avatar_path())
@@ -127,12 +128,13 @@ def test_the_stock_avatar_is_not_fitted_anew(fits: list[Fit]) -> None:
     assert not fits
 
 
-@pytest.mark.parametrize("settings", [LoadSettings(include_hair=True), LoadSettings(bones={"leftToes": None})])
+@pytest.mark.parametrize("settings", sampled([LoadSettings(include_hair=True), LoadSettings(bones={"leftToes": None})]))
 def test_with_other_settings_it_is_fitted(settings: LoadSettings, fits: list[Fit]) -> None:
     humanoid = Humanoid.load(stock_avatar_path(), settings)
     assert humanoid.capsules is fits[0].capsules
 
 
+@pytest.mark.long
 def test_bones_that_are_told_beside_it_count(tmp_path: Path, fits: list[Fit]) -> None:
     copy = tmp_path / "stock.vrm"
     copy.write_bytes(stock_avatar_path().read_bytes())

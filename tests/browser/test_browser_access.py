@@ -112,6 +112,7 @@ def test_another_key_walks_once_it_is_given_and_after_a_reload(open_page: Open) 
     assert "Z" in page.locator("#help kbd").all_inner_texts()
 
 
+@pytest.mark.long
 def test_the_language_is_chosen_in_the_menu_and_kept(open_page: Open) -> None:
     live = open_page("scene=empty&lang=en", viewport=(1280, 800))
     with live.page.expect_navigation():
@@ -122,6 +123,7 @@ def test_the_language_is_chosen_in_the_menu_and_kept(open_page: Open) -> None:
     live.wait("document.documentElement.lang === 'zh-Hant' && s.settings")
 
 
+@pytest.mark.long
 def test_all_of_it_can_be_reached_at_twice_the_size(open_page: Open) -> None:
     live = open_page("scene=doorway", viewport=(640, 360), device_scale_factor=2, forced_colors="active")
     live.wait("s.scene === 'doorway'")

@@ -149,6 +149,7 @@ def test_a_scene_travels_in_an_address_and_drafts_stay(open_page: Open) -> None:
     assert all(names[0] in plan for plan in walked)  # and no empty scene before it, on which it would wait
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("size", [(390, 844), pytest.param((844, 390), marks=pytest.mark.long)])
 def test_all_of_it_can_be_reached_on_a_phone(open_page: Open, size: tuple[int, int]) -> None:
     live = open_page("scene=doorway&lang=zh-Hant", viewport=size, has_touch=True)
@@ -203,6 +204,7 @@ def test_two_fingers_zoom_and_move_the_board_and_place_nothing(open_page: Open) 
     live.wait("s.build.things.length === 1")
 
 
+@pytest.mark.long
 def test_back_leaves_what_is_built_and_a_link_in_the_same_tab_opens_it(open_page: Open) -> None:
     live = open_page("scene=empty", viewport=(1280, 720))
     live.page.locator("#scene").select_option("a")

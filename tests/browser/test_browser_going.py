@@ -47,6 +47,7 @@ def test_a_drag_looks_around_and_goes_nowhere(open_page: Open) -> None:
     assert live.state()["going"] is None
 
 
+@pytest.mark.long
 def test_a_tap_goes_there_on_either_half_of_a_touch_screen(open_page: Open) -> None:
     live = open_page("scene=empty", has_touch=True, viewport=(800, 600))
     live.settle()

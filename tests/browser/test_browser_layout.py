@@ -78,6 +78,7 @@ def test_the_title_ends_before_the_bar_on_a_narrow_page(open_page: Open, lang: s
                 assert found[part]["x"] + found[part]["width"] <= brand["x"] + brand["width"], (width, found)
 
 
+@pytest.mark.long
 def test_the_card_at_the_finish_lies_on_no_panel(open_page: Open) -> None:
     live = open_page("scene=empty", viewport=SIZES[0])
     live.page.evaluate("document.querySelector('#finish').hidden = false")

@@ -63,6 +63,7 @@ def contrasts_ahead(live: LivePage) -> NDArray[np.float64]:
     return contrasts
 
 
+@pytest.mark.long
 def test_past_the_finish_the_avatar_walks_on_and_so_does_the_ground(open_page: Open) -> None:
     """Its squares and lines are there where the scene's own floor, which ends at 8 m, has long ended."""
     live = open_page("scene=doorway&speed=1.6&ui=0&camera=behind", viewport=(800, 600))

@@ -81,6 +81,7 @@ def test_a_replay_is_filmed_to_its_end(open_page: Open) -> None:
     live.wait("s.replay.filming === false")
 
 
+@pytest.mark.long
 def test_a_walk_is_saved_for_other_programs(open_page: Open) -> None:
     live = open_page("scene=empty", viewport=(1000, 640))
     _walk_to(live, 1.0)

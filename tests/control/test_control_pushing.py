@@ -69,6 +69,7 @@ def test_a_pushed_box_stops_before_who_has_no_room_to_leave() -> None:
     assert walker.hand is not None
 
 
+@pytest.mark.long
 def test_who_stands_makes_way_for_what_comes() -> None:
     walker = controller()
     walker.push(0, (0.0, 0.0))

@@ -174,7 +174,7 @@ def test_a_walk_moves_as_its_states_say() -> None:
         pytest.param(ring_body(), 1.0, id="low-poly", marks=pytest.mark.long),
         pytest.param(ring_body(head=0.24), 1.0, id="with a big head"),
         pytest.param(ring_body(), 0.36, id="as small as a doll", marks=pytest.mark.long),
-        pytest.param(box_body(0.35), 0.6, id="a small one of boxes"),
+        pytest.param(box_body(0.35), 0.6, id="a small one of boxes", marks=pytest.mark.long),
     ],
 )
 def test_bodies_of_other_builds_get_courses(body: Body, unit: float) -> None:

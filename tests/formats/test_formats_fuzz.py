@@ -15,7 +15,7 @@ from elbowroom.formats.packing import write_glb
 SMALL = build(Recipe(vrm="1", points=2, spin=True))
 MESHED = build(Recipe(vrm="0", points=2, heading=np.pi))
 JSON_SIZE = int.from_bytes(MESHED[12:16], "little")
-CALM = settings(max_examples=40, deadline=None, suppress_health_check=list(HealthCheck))
+CALM = settings(max_examples=20, deadline=None, suppress_health_check=list(HealthCheck))
 WRONG: list[Any] = [None, -1, 0, 1, 2**40, 1.5, 1e300, "x", [], {}, [[]], True, [1e9] * 3, [0] * 4]
 
 
@@ -47,7 +47,7 @@ def test_cut_off_files(length: int) -> None:
     _load(SMALL[:length])
 
 
-@settings(CALM, max_examples=20)
+@settings(CALM, max_examples=12)
 @given(st.data())
 def test_a_wrong_value_anywhere_in_the_json(data: st.DataObject) -> None:
     content = copy.deepcopy(json_of(MESHED))

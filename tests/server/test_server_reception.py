@@ -69,7 +69,9 @@ def test_one_machine_sends_four_files_at_once_and_all_together_eight(app: Starle
     asyncio.run(ask())
 
 
-@pytest.mark.parametrize(("way", "status"), [(LARGE, 413), (LEFT, 408), (WRONG, 422)], ids=["large", "left", "wrong"])
+@pytest.mark.parametrize(
+    ("way", "status"), [(LARGE, 413), (LEFT, 408), pytest.param(WRONG, 422, marks=pytest.mark.long)]
+)
 def test_who_is_done_or_gone_makes_place_for_the_next(app: Starlette, way: bytes | None, status: int) -> None:
     """As often as there are places, and once more: one that were kept would be missed."""
 
