@@ -5,6 +5,8 @@ import subprocess
 import sys
 from pathlib import Path
 
+import pytest
+
 from elbowroom import kernel_cache
 from elbowroom.planning.exact.group import search as group_search
 
@@ -62,6 +64,7 @@ def test_a_kernel_knows_what_it_calls() -> None:
     assert not {name for name in names if name.startswith(("control/", "server/", "cli/"))}
 
 
+@pytest.mark.long
 def test_a_kernel_that_is_kept_is_compiled_anew_when_a_constant_elsewhere_has_changed(tmp_path: Path) -> None:
     """The toy package takes the place of ours, so that its kernels are stamped as ours are."""
     package = made(tmp_path)

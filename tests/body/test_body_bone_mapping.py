@@ -98,6 +98,7 @@ def test_the_shape_needs_no_t_pose_and_no_unit() -> None:
     assert all(named[bone] == f"n{SKELETON.index(bone)}" for bone in REQUIRED)
 
 
+@pytest.mark.long
 def test_sides_without_names_come_from_the_toes() -> None:
     for heading in (0.0, np.pi):
         glb = build(Recipe(names={bone: f"n{i}" for i, bone in enumerate(SKELETON.names)}, heading=heading))

@@ -153,6 +153,7 @@ def test_a_vrm_is_in_metres(unit: float, head: float, tmp_path: Path) -> None:
     assert crown_of(again, surface) == pytest.approx(true)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("unit", sampled([100.0, 0.1, 2.2]))
 def test_a_vrm_of_no_walkers_size_is_refused_and_can_be_scaled(unit: float, tmp_path: Path) -> None:
     path = tmp_path / "box.vrm"

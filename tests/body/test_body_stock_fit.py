@@ -142,6 +142,7 @@ def test_bones_that_are_told_beside_it_count(tmp_path: Path, fits: list[Fit]) ->
     assert Humanoid.load(copy).capsules is fits[0].capsules
 
 
+@pytest.mark.long
 def test_a_changed_avatar_is_fitted(fits: list[Fit]) -> None:
     """By a bit; the file is as long as it was."""
     data = bytearray(stock_avatar_path().read_bytes())

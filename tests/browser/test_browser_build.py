@@ -104,6 +104,7 @@ def test_a_scene_is_built_with_the_mouse(open_page: Open) -> None:
     assert _saved(live).obstacles.moving.tracks[0].repeat.value == "pingpong"
 
 
+@pytest.mark.long
 def test_start_and_finish_are_moved_and_what_is_wrong_is_said_in_one_line(open_page: Open) -> None:
     live = open_page("scene=empty", viewport=(1280, 720))
     _build(live)

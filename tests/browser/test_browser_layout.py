@@ -91,6 +91,7 @@ def test_the_card_at_the_finish_lies_on_no_panel(open_page: Open) -> None:
         assert [name for name, box in found.items() if overlap(box, card)] == [], (width, height)
 
 
+@pytest.mark.long
 def test_h_and_the_address_hide_everything_but_the_world(open_page: Open) -> None:
     live = open_page("scene=empty")
     assert "#bar" in boxes(live)

@@ -32,6 +32,7 @@ def body(live: LivePage) -> dict[str, NDArray[np.float64]]:
     return seen
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("camera", ["behind", pytest.param("front", marks=pytest.mark.long)])
 def test_with_all_overlays_on_the_avatar_stays_in_sight(open_page: Open, camera: str) -> None:
     live = open_page(f"scene=empty&overlays=all&camera={camera}", viewport=(1000, 700))

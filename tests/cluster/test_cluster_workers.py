@@ -88,6 +88,7 @@ def test_nothing_to_do_and_runs_that_are_left_early(workers: RayWorkers) -> None
     assert [answer.value for _, answer in workers.run([Square(4)])] == [16]
 
 
+@pytest.mark.long
 def test_a_course_is_walked_as_in_this_process_to_the_bit(workers: RayWorkers, tmp_path: Path) -> None:
     settings = GauntletSettings(level=1, courses=1, seed=40, judge=True)
     far, near = run_gauntlet(settings, workers, tmp_path), run_gauntlet(settings, ThisProcess())
