@@ -169,8 +169,9 @@ def test_a_flood_ends_its_connection_and_holds_nobody_up(
         with pytest.raises(OSError, match=r"reset|Broken pipe|Bad file descriptor"):
             pour(other.connection.socket, flood, client)
     assert client.is_served()
-    assert "Traceback" not in caplog.text
-    assert "failed" not in caplog.text
+    theirs = "websockets.client"  # what ours says of the socket that was torn from it is nothing of the server's
+    said = [f"{one.getMessage()}{one.exc_text or ''}" for one in caplog.records if one.name != theirs]
+    assert not [line for line in said if "Traceback" in line or "failed" in line]
 
 
 def pour(into: socket.socket, flood: bytes, beside: Client) -> None:
