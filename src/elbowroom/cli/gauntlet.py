@@ -65,9 +65,7 @@ def gauntlet(
     jobs: Jobs = None,
     cluster: Cluster = None,
     out: Annotated[Path | None, typer.Option(help="Folder for results; an interrupted run goes on there.")] = None,
-    judge: Annotated[
-        bool, typer.Option("--judge", help="Have every walk judged by another library, coal: capsules and mesh.")
-    ] = False,
+    judge: Annotated[bool, typer.Option("--judge", help="Have coal judge every walk: capsules and mesh.")] = False,
     shapes: Annotated[
         bool, typer.Option("--shapes", help="Cut most boxes down to spheres, capsules, cylinders and hulls.")
     ] = False,

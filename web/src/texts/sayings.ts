@@ -19,7 +19,7 @@ export const SAYINGS: Readonly<Record<string, string>> = {
   "the client reads too slowly": "連線太慢",
   "the session failed inside the server; its log says more": "伺服器內部發生錯誤，詳見其記錄",
   "too many steps: at most 240 a second are taken": "步數太多：每秒最多 240 步",
-  "{0}: holds more than the {1} steps of a day": "{0}：步數超過一天的 {1} 步",
+  "only the first {0} steps are read: more would not fit into memory": "只讀取前 {0} 步：更多步會超出記憶體",
   "too many wrong messages; the last: {0}": "錯誤訊息太多，最後一則：{0}",
   "That page may not talk to this server.": "該頁面不得與此伺服器連線。",
   "configure: too many changes at once; wait until those before are done": "一次變更太多，請等先前的變更完成",

@@ -13,8 +13,8 @@ SHORTEST, TALLEST = 0.3, 3.0  # metres
 class LoadSettings:
     """Options of `Humanoid.load`; raises `InputError` for a height that no humanoid has."""
 
-    # Nodes of bones: a JSON file, or bone -> node (name, number, None for none); None: `FILE.bones.json`, if any
-    bones: Path | Mapping[str, str | int | None] | None = None  # the nodes of its bones, where they are told
+    # A JSON file, or the node of each bone: its name, its number, or None for none.
+    bones: Path | Mapping[str, str | int | None] | None = None  # None: those of `FILE.bones.json`, if there is one
     include_hair: bool = False  # hair, skirts and the like belong to the collision body too
     height: float | None = None  # metres from the ground to the crown; None: as the file has it
 

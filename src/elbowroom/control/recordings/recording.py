@@ -56,7 +56,7 @@ _MAGIC_1 = b"ELBOWROOM RECORDING 1\n"
 STEPS_PER_CHUNK = 60
 MAX_HEADER_BYTES = 32 * 2**20
 MAX_CHUNK_STEPS = 4096
-MOST_STEPS = 5_184_000  # a day, at 60 a second; and as many rows are told beside them
+MOST_ROWS = 10_000_000  # of steps and of what is told beside them: two days, at 60 a second
 MAX_CHUNK_ROWS = 65_536  # of what is told beside the steps
 _CHUNK_MARK, _HAND_MARK, _WAYS_MARK, _END_MARK = b"CHNK", b"HAND", b"WAYS", b"DONE"
 _BESIDE = {_HAND_MARK: THING, _WAYS_MARK: WAY}
@@ -310,8 +310,9 @@ class Recording:
                 steps, data = found
                 crc = zlib.crc32(data, crc)
                 rows += len(steps)
-                if rows > 2 * MOST_STEPS:
-                    raise InputError(f"{self.path}: holds more than the {MOST_STEPS} steps of a day")
+                if rows > MOST_ROWS:
+                    self.note = f"only the first {count} steps are read: more would not fit into memory"
+                    return
                 if head[:4] in _BESIDE:
                     self._beside[head[:4]].append(steps)
                     continue
