@@ -65,7 +65,7 @@ def tour(
     check_arguments(scenes=[scene], planners=[planner], queues=[queue], files=[avatar, bones], written=[record, plan])
     check_arguments(clips=clip_options.named_by(swing, dodge))
     if judge:
-        check_judge()
+        check_judge("--no-judge")
     told, reading = place_options(scale, up, ground, drop, passable), settings_by(bones, height, include_hair)
     settings = CrossingSettings(planner, queue, seed)
     motions = clip_options.motions_by(swing, dodge, clip_options.told_by(None, None, None), style)

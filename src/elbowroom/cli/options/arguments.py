@@ -58,10 +58,14 @@ def check_file(file: Path) -> None:
         raise InputError(f"{file}: cannot be read: {error.strerror}") from None
 
 
-def check_judge() -> None:
-    """Raises `InputError` where the library that judges is not installed, before anything is walked to be judged."""
+def check_judge(without: str = "") -> None:
+    """Raises `InputError` where the library that judges is not installed, before anything is walked to be judged.
+
+    `without` is the option, if there is one, with which nothing is judged.
+    """
     if find_spec("coal") is None:
-        raise InputError("the judge needs the collision library coal: pip install 'elbowroom[judge]'")
+        mend = "pip install 'elbowroom[judge]'" + (f", or {without}" if without else "")
+        raise InputError(f"the judge needs the collision library coal: {mend}")
 
 
 def check_folder(folder: Path | None) -> None:
