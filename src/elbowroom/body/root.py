@@ -26,7 +26,7 @@ class RootState(NamedTuple):
     turn: float = 0.0  # heading rate, rad/s
     phase: float = 0.0  # gait phase in strides (two steps), 0 = left heel strike; never wrapped along a path
     height: float = 0.0  # of the root's frame, metres: that of the ground about it
-    climb: float = 0.0  # its rate, m/s
+    climb: float = 0.0  # its rate over some way, m/s
     left_rise: float = 0.0  # of the ground under the left foot above the root's frame, metres
     left_slope: float = 0.0  # of that ground ahead of the foot, radians, positive where it falls
     right_rise: float = 0.0  # the same of the right foot

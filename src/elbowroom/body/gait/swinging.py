@@ -30,18 +30,19 @@ def _towards(foot: Floats, i: int, goal: float, part: float, time: float) -> Non
 
 @helper
 def _time_over_ground(
-    stride: Stride, goal: tuple[float, float, float], times: tuple[float, float], foot: Floats
+    stride: Stride, goal: tuple[float, float, float], times: tuple[float, float], part: float, foot: Floats
 ) -> float:
     """Seconds in which a swinging foot goes over its place; none where it is there.
 
-    `times` are the seconds until it lands, and until it should be over that place. It takes more of them where that has
-    changed since.
+    `times` are the seconds until it lands, and until it should be over that place, for which it has that `part` of an
+    even swing. It takes more of them where that has changed since, and it would be much faster than evenly.
     """
     (lands, over), wide = times, TURNING * stride.scale
+    evenly = stride.speed / ((1.0 - stride.duty) * part)
     way = np.hypot(goal[0] - foot[X], goal[1] - foot[Z]) + wide * abs(goal[2] - foot[YAW])
     if over <= 0.0 and way < _THERE * stride.scale:
         return 0.0
-    return float(min(max(over, 1.5 * way / (_LATE_SPEED * np.sqrt(stride.scale))), lands))
+    return float(min(max(over, 1.5 * way / (_LATE_SPEED * np.sqrt(stride.scale) + 1.5 * evenly)), lands))
 
 
 @helper
@@ -78,7 +79,7 @@ def swing_foot(
     before, then = own_detour(own, stride, side, over), own_detour(own, stride, side, there)
     for i in range(3):
         foot[i] -= before[i]
-    time = _time_over_ground(stride, goal, (left + dt, (left + dt) * (way - done) / (1.0 - done)), foot)
+    time = _time_over_ground(stride, goal, (left + dt, (left + dt) * (way - done) / (1.0 - done)), way, foot)
     for i in range(3):
         if time > 0.0:
             _towards(foot, i, goal[i], min(dt / time, 1.0), time)

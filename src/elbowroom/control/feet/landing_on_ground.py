@@ -37,8 +37,9 @@ _TRIED, _FARTHEST = 8, 11  # so often; where even its ball is in the air
 _LEVEL, _HOLLOW = 0.02, 0.006  # radians: less is level; metres under a heel
 _PLACES = 8  # from the ankle to where toes begin
 _TOES = 0.03  # metres of a standard leg, before the ball: with these on the ground it does not slide as it rolls
-# How well a foot stands: on ankle and ball, on its ball, with so many of these places and more in the air, or nowhere.
-_WHOLE, _ON_BALL, _IN_AIR, _NOWHERE = 0, 1, 2, _PLACES + 4
+# How well a foot stands: on ankle, ball and toes, without toes, on its ball, with so many of these places and more in
+# the air, or nowhere.
+_WHOLE, _NO_TOES, _ON_BALL, _IN_AIR, _NOWHERE = 0, 1, 2, 3, _PLACES + 5
 _BALL, _HEEL = 6, 7  # columns of `GaitShape.legs`
 
 
@@ -69,17 +70,21 @@ def _air(under: Underfoot, row: Floats, foot: Place, ahead: float, lie: Lie) -> 
 def _rank(under: Underfoot, who: Stepper, row: Floats, side: int, foot: Place) -> tuple[int, Lie]:
     """How well a foot would stand at a place, less is better; and how it would lie.
 
-    It needs ground under its ankle and where its toes begin, not under its toes alone; where it would not lie level
-    under its heel too, on which it comes down.
+    It needs ground under its ankle and where its toes begin, or at least as far as that, not under its toes alone;
+    where it would not lie level under its heel too, on which it comes down.
     """
     front, heel = who.legs[side, _BALL] + _TOES * who.scale, who.legs[side, _HEEL]
     lie = stood_at(under.ground, under.sole, row, foot[0], foot[1], foot[2])
     if lie[0] <= NO_GROUND:
         return _NOWHERE, lie
-    if _air(under, row, foot, front, lie) < _AIR:
+    toes = _air(under, row, foot, front, lie) < _AIR
+    if toes or _air(under, row, foot, who.legs[side, _BALL], lie) < _AIR:
         stands = _air(under, row, foot, 0.0, lie) < _AIR
         level = abs(lie[1]) < _LEVEL or _air(under, row, foot, -heel, lie) < _HOLLOW
-        return _WHOLE if stands and level else _ON_BALL, lie
+        if stands and level:
+            return _WHOLE if toes else _NO_TOES, lie
+        if toes:
+            return _ON_BALL, lie
     count = 0
     for k in range(_PLACES + 1):
         count += 1 if _air(under, row, foot, front * k / _PLACES, lie) >= _AIR else 0
@@ -90,9 +95,9 @@ def _rank(under: Underfoot, who: Stepper, row: Floats, side: int, foot: Place) -
 def farther_onto(under: Underfoot, who: Stepper, row: Floats, side: int, goal: Place) -> tuple[float, Lie]:
     """How much farther ahead a foot has to land so that it stands on a tread and not across its edge, metres.
 
-    As little as possible. Where that is not had within a few centimetres it stands on its ball, over which it rolls;
-    where it does not do so either, it goes a little farther, and as little of it as can be is in the air. And how it
-    lies there.
+    As little as possible. Where that is not had within a few centimetres its toes hang in the air, or it stands on its
+    ball, over which it rolls; where it does not do so either, it goes a little farther, and as little of it as can be
+    is in the air. And how it lies there.
     """
     best, farther, lies = _NOWHERE, 0.0, (NO_GROUND, 0.0)
     for k in range(2 * _FARTHEST + 1):
@@ -100,7 +105,7 @@ def farther_onto(under: Underfoot, who: Stepper, row: Floats, side: int, goal: P
         rank, lie = _rank(under, who, row, side, _moved(goal, ahead))
         if rank < best:
             best, farther, lies = rank, ahead, lie
-        if best == _WHOLE or (best == _ON_BALL and k >= 2 * _TRIED):
+        if best == _WHOLE or (best <= _ON_BALL and k >= 2 * _TRIED):
             break
     return float(farther), lies
 

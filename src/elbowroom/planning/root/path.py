@@ -55,8 +55,9 @@ def interpolate_root(a: Floats, b: Floats, u: float, interval: float) -> Floats:
 
     Place and heading follow the cubic Hermite curves through both states' places and velocities; the velocities are
     those curves' derivatives, in the axes of the heading reached. The gait phase runs from `a` to `b` at a rate that
-    changes linearly between the cadences of the two states, so it never runs backwards. The height goes as places do;
-    what the feet stand on is left for who puts them there.
+    changes linearly between the cadences of the two states, so it never runs backwards. The height goes as places do.
+    How fast the ground climbs is told over some way (`motion`), so on a stair it is even, and changes linearly too: the
+    curve of the height has a wave for every tread. What the feet stand on is left for who puts them there.
     """
     out = np.empty(a.shape[0])
     interpolate_between(a, b, rates_at(a, b), u, interval, out)
@@ -95,7 +96,8 @@ def interpolate_between(
     if out.shape[0] > HEIGHT:
         out[HEIGHT:] = 0.0
         if a.shape[0] > HEIGHT:
-            out[HEIGHT], out[HEIGHT + 1] = _hermite(a[HEIGHT], a[HEIGHT + 1], b[HEIGHT], b[HEIGHT + 1], u, interval)
+            out[HEIGHT], _ = _hermite(a[HEIGHT], a[HEIGHT + 1], b[HEIGHT], b[HEIGHT + 1], u, interval)
+            out[HEIGHT + 1] = a[HEIGHT + 1] + u * (b[HEIGHT + 1] - a[HEIGHT + 1])
 
 
 @inner_exact_kernel
