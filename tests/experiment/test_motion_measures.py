@@ -18,6 +18,7 @@ from elbowroom.experiment.motion.bands import (
     stance_share,
     wrist_sparc,
 )
+from elbowroom.experiment.motion.borne import borne, shares
 from elbowroom.experiment.motion.curves import curves_of
 from elbowroom.experiment.motion.cycles import PARTS, in_strides, mean_range
 from elbowroom.experiment.motion.feet import FootTrack, feet
@@ -36,6 +37,7 @@ from shared_data import SHARED, needs_shared
 Floats = NDArray[np.float64]
 
 RATE = 60.0
+FLAT = np.array([[-0.18, 0.0], [0.0, 0.0], [0.07, 0.0]])  # of the foot below, whose ball is its second place
 
 
 def foot(x: Floats, height: Floats) -> Floats:
@@ -84,12 +86,43 @@ def test_feet_are_told_in_millimetres() -> None:
     n = 40
     height = np.concatenate([np.full(10, -0.004), 0.03 + 0.05 * np.abs(np.linspace(-1, 1, 20)), np.zeros(10)])
     planned = np.concatenate([np.ones(10, bool), np.zeros(20, bool), np.ones(10, bool)])
-    track = FootTrack(foot(np.zeros(n), height), planned, planned)
+    track = FootTrack(foot(np.zeros(n), height), planned, planned, FLAT, np.zeros(n))
     found = feet([track])
     assert found.in_ground == pytest.approx(4.0)
     assert found.clearance == pytest.approx(32.6, abs=0.1)
     assert found.as_planned.stances == 2
     assert found.as_planned.worst == 0.0
+
+
+def test_a_foot_on_its_heel_over_an_edge_has_little_ground_under_it() -> None:
+    ahead = np.linspace(-0.18, 0.07, 26)
+    flat = np.stack([ahead, np.zeros(26)], axis=1)
+    standing = np.concatenate([np.zeros(5, bool), np.ones(20, bool), np.zeros(5, bool)])
+    heights = np.zeros((30, 26))
+    assert shares(heights, standing, flat, np.zeros(30)) == pytest.approx(np.array([[0.0, 1.0]]))
+    over = heights + np.where(ahead > -0.135, 0.17, 0.0)
+    assert shares(over, standing, flat, np.zeros(30))[0, 1] == pytest.approx(0.25, abs=0.03)
+    toes_over = heights + np.where(ahead > 0.02, 0.17, 0.0)
+    assert shares(toes_over, standing, flat, np.zeros(30))[0, 1] == pytest.approx(1.0)
+
+
+def test_a_foot_that_rolls_has_ground_under_all_of_it() -> None:
+    ahead = np.linspace(-0.18, 0.0, 10)
+    pitch = np.linspace(-0.4, 0.4, 60)[:, None]
+    heights = np.where(pitch < 0.0, -np.sin(pitch) * (ahead + 0.18), -np.sin(pitch) * ahead)
+    standing = np.ones(60, np.bool_)
+    standing[[0, -1]] = False
+    high_heeled = np.stack([ahead, np.linspace(0.04, 0.0, 10)], axis=1)
+    for flat in (high_heeled, high_heeled * [1.0, 0.0]):
+        assert shares(heights + flat[:, 1], standing, flat, np.zeros(60))[0, 1] == pytest.approx(1.0)
+
+
+def test_stances_are_told_apart_by_where_the_body_goes() -> None:
+    found = borne([np.array([[0.17, 0.6], [0.0, 1.0]]), np.array([[-0.17, 0.9], [-0.1, 0.7]]), np.empty((0, 2))])
+    assert (found.up.stances, found.level.stances, found.down.stances) == (1, 1, 2)
+    assert found.down.mean == pytest.approx(80.0)
+    assert found.down.least == pytest.approx(70.0)
+    assert borne([]).up.least is None
 
 
 def test_strides_are_cut_at_whole_phases_and_drift_is_taken_off() -> None:

@@ -94,7 +94,13 @@ def _feet(own: "Feet") -> dict[str, str]:
         name: f"{found.median:.1f} mm (half), {found.p99:.1f} (99 %), {found.worst:.1f} (all), {found.stances} stances"
         for name, found in (("slide, as planned", own.as_planned), ("slide, by looks", own.by_looks))
     }
-    return rows | {"in the ground": f"{own.in_ground:.1f} mm", "swing clears": f"{_number(own.clearance)} mm"}
+    ways = (("level", own.borne.level), ("up", own.borne.up), ("down", own.borne.down))
+    under = [f"{way.mean:.0f} % {name} (least {way.least:.0f})" for name, way in ways if way.stances]
+    return rows | {
+        "in the ground": f"{own.in_ground:.1f} mm",
+        "swing clears": f"{_number(own.clearance)} mm",
+        "ground under heel to ball": ", ".join(under) or "no whole stance",
+    }
 
 
 def _knees(found: "Knees") -> str:

@@ -9,6 +9,7 @@ STANCE_SHARES = ((0.5, 62.5), (0.8, 61.5), (1.1, 60.4), (1.4, 59.3), (2.0, 57.2)
 SHARE_WITHIN = 2.0  # %
 WRIST_SPARC = (-3.0, -2.4)  # of recorded wrists, where a window does not happen to hold whole strides
 KNEE_SPEED, KNEE_ACCELERATION = 700.0, 25_000.0  # deg/s, deg/s²: recorded ones have nearly as much
+BORNE_DOWN, BORNE_UP = 80.0, 60.0  # % of a sole from heel to ball with ground under it, of who goes down or up
 _STRIDES = (0.9, 0.95, 1.0, 1.05, 1.1)  # seconds
 _ROUGHEST = (-3.07, -3.08, -3.25, -3.06, -2.92)  # SPARC of the wrists of two recorded walks at these
 

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.root import HEIGHT, RISES
+from elbowroom.experiment.motion.borne import Borne, borne, shares
 from elbowroom.experiment.motion.sole import Sole
 from elbowroom.experiment.motion.stance import slides, standing_by_looks, stretches
 from elbowroom.experiment.motion.walked import RATE, Walked
@@ -38,6 +39,7 @@ class Feet:
     by_looks: Slides  # from when they have come to rest until they are lifted
     in_ground: float  # millimetres that the lowest point of a sole is below the ground at most
     clearance: float | None  # millimetres: the least height of a sole in the middle of a swing; None without a swing
+    borne: Borne  # how much of the soles has ground under it
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,6 +49,8 @@ class FootTrack:
     points: Floats  # (N, P, 3) of its sole, heights those above the ground
     planned: Bools  # (N,)
     seen: Bools  # (N,)
+    flat: Floats  # (P, 2) as in `Sole`
+    body: Floats  # (N,) how high the body's place is, metres
 
     def clearances(self) -> Floats:
         """The least height of the sole in the middle of each swing, metres."""
@@ -70,7 +74,8 @@ def foot_tracks(walked: Walked, soles: Sequence[Sole]) -> tuple[FootTrack, FootT
             walked.roots[span, HEIGHT] + walked.roots[span, RISES + 2 * side],
         )
         points[:, :, 1] -= _under(ground, np.ascontiguousarray(points), near)
-        tracks.append(FootTrack(points, walked.standing[span, side], standing_by_looks(points, RATE)))
+        planned, seen = walked.standing[span, side], standing_by_looks(points, RATE)
+        tracks.append(FootTrack(points, planned, seen, sole.flat, walked.roots[span, HEIGHT]))
     left, right = tracks
     return left, right
 
@@ -93,6 +98,7 @@ def feet(tracks: Sequence[FootTrack]) -> Feet:
         slides_of([slides(track.points, track.seen) for track in tracks]),
         max(0.0, -1e3 * min(float(track.points[:, :, 1].min()) for track in tracks)),
         1e3 * float(clearances.min()) if len(clearances) else None,
+        borne(shares(track.points[:, :, 1], track.planned, track.flat, track.body) for track in tracks),
     )
 
 

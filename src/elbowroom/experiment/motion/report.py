@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.experiment.motion import bands
 from elbowroom.experiment.motion.bands import Band, at_least, at_most
+from elbowroom.experiment.motion.borne import Borne
 from elbowroom.experiment.motion.cost import Cost, cost
 from elbowroom.experiment.motion.curves import Curves, curves
 from elbowroom.experiment.motion.feet import Feet, FootTrack, feet, foot_tracks
@@ -142,9 +143,19 @@ def _of_feet(found: dict[str, Feet]) -> Sequence[Band]:
         rows.append(at_most(f"{case}: slide of a standing foot, 99 %", own.as_planned.p99, most, "mm"))
         rows.append(at_most(f"{case}: slide of a foot that rests, 99 %", own.by_looks.p99, most, "mm"))
         rows.append(at_most(f"{case}: sole in the ground", own.in_ground, 3.0, "mm"))
+        rows += _of_borne(case, own.borne) if case in UNEVEN else ()
     if STEADY in found:
         rows.append(Band(f"{STEADY}: clearance of the swinging foot", found[STEADY].clearance, 10.0, 25.0, "mm"))
     return rows
+
+
+def _of_borne(case: str, found: Borne) -> Sequence[Band]:
+    ways = (("down", found.down, bands.BORNE_DOWN), ("up", found.up, bands.BORNE_UP))
+    return [
+        at_least(f"{case}: ground under heel to ball, {name}", under.least, least, "%")
+        for name, under, least in ways
+        if under.stances
+    ]
 
 
 def _of_knees(named: tuple[str, Knees]) -> Sequence[Band]:

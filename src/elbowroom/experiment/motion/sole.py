@@ -14,6 +14,7 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 _THICK = 0.025  # of a leg: what is so near the lowest point of a foot in T-pose is its sole
+_BALL = 6  # column of `GaitShape.legs`
 _DIRECTIONS, _SPREAD = 48, 24  # in which the farthest points are taken, and points spread over the whole sole besides
 
 
@@ -21,6 +22,7 @@ class Sole(NamedTuple):
     """Points of one foot, as its joints carry them."""
 
     carried: Carried
+    flat: Floats  # (P, 2) how far each is ahead of the toes' joint, and above the lowest, as the foot stands flat
 
     def points(self, posed: Posed) -> Floats:
         """Where they are (N, P, 3) in N poses."""
@@ -46,8 +48,19 @@ def _of_skin(humanoid: Humanoid, skin: Skin | None, side: str) -> Sole:
     places = skin.vertices(upright, mine)[0]
     leg = 2.0 * gait_shape(skeleton).half_leg
     low = np.flatnonzero(places[:, 1] < places[:, 1].min() + _THICK * leg)
-    kept = np.concatenate([low[[places[low][:, 2].argmin()]], _outermost(places), low[_spread(places[low])]])
-    return Sole(skin.carried(mine[np.unique(kept)]))
+    kept = np.unique(np.concatenate([low[[places[low][:, 2].argmin()]], _outermost(places), low[_spread(places[low])]]))
+    return _sole(skin.carried(mine[kept]), places[kept], _ball(humanoid, side))
+
+
+def _sole(carried: Carried, places: Floats, ball: float) -> Sole:
+    """The sole of points with those places (P, 3) in T-pose, of a foot whose toes' joint is so far ahead, metres."""
+    return Sole(carried, np.stack([places[:, 2] - ball, places[:, 1] - places[:, 1].min()], axis=1))
+
+
+def _ball(humanoid: Humanoid, side: str) -> float:
+    """How far ahead the joint of the toes is in T-pose, or what the foot rolls over where it has none, metres."""
+    ankle = humanoid.skeleton.positions[humanoid.skeleton.index(f"{side}Foot")]
+    return float(ankle[2] + gait_shape(humanoid.skeleton).legs[0 if side == "left" else 1, _BALL])
 
 
 def _outermost(places: Floats) -> Ints:
@@ -82,4 +95,5 @@ def _of_skeleton(humanoid: Humanoid, side: str) -> Sole:
     offsets = np.array([[0.0, -ankle[1], -heel], [0.0, -ankle[1], toes[2] - ankle[2]], [0.0, -toes[1], 0.0]])
     offsets[2] = [0.0, -toes[1], ankle[2] + ahead - toes[2]]
     points = Skin(np.array([[0, 1, 2]]), np.array([[foot], [foot], [front]]), np.ones((3, 1)), offsets[:, None], 0)
-    return Sole(points.carried(np.arange(3)))
+    places = offsets + np.stack([ankle, ankle, toes])
+    return _sole(points.carried(np.arange(3)), places, _ball(humanoid, side))
