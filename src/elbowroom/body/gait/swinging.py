@@ -6,7 +6,7 @@ from numpy.typing import NDArray
 from elbowroom.body.gait.foot_state import LIFT, LIFTING, PITCH, ROLLING, SWING, VELOCITY, YAW, Goal, X, Z, eased, land
 from elbowroom.body.gait.landing_places import LOWER, beside_twin, borne_pitch, way_over
 from elbowroom.body.gait.own_steps import OwnSteps, own_detour, own_roll
-from elbowroom.body.gait.roll import least_lift
+from elbowroom.body.gait.roll import least_lift, straight_part
 from elbowroom.body.gait.stepping_times import TURNING
 from elbowroom.body.gait.stride import Stride
 from elbowroom.jit import helper, inner_exact_kernel
@@ -35,10 +35,10 @@ def _time_over_ground(
     """Seconds in which a swinging foot goes over its place; none where it is there.
 
     `times` are the seconds until it lands, and until it should be over that place, for which it has that `part` of an
-    even swing. It takes more of them where that has changed since, and it would be much faster than evenly.
+    even swing. It takes more of them where that has changed since, and it would be much faster than evenly ahead.
     """
     (lands, over), wide = times, TURNING * stride.scale
-    evenly = stride.speed / ((1.0 - stride.duty) * part)
+    evenly = straight_part(stride) * stride.speed / ((1.0 - stride.duty) * part)
     way = np.hypot(goal[0] - foot[X], goal[1] - foot[Z]) + wide * abs(goal[2] - foot[YAW])
     if over <= 0.0 and way < _THERE * stride.scale:
         return 0.0
