@@ -25,12 +25,12 @@ WHO = Stepper(GAIT.legs, GAIT.scale, CYCLE)
 
 
 @exact_kernel
-def farther(under: Underfoot, who: Stepper, row: Floats, side: int, goal: Place) -> tuple[float, Lie]:
+def farther(under: Underfoot, who: Stepper, row: Floats, side: int, goal: Place, deepest: float) -> tuple[float, Lie]:
     """The kernel, for who calls it from Python."""
-    return farther_onto(under, who, row, side, goal)
+    return farther_onto(under, who, row, side, goal, deepest)
 
 
-def landed(begin: float, length: float, z: float) -> tuple[float, float]:
+def landed(begin: float, length: float, z: float, deepest: float = -math.inf) -> tuple[float, float]:
     """How much farther ahead a left foot lands that would at `z`, where a block lies so; and how high."""
     block: dict[str, Any] = {
         "type": "box",
@@ -39,7 +39,7 @@ def landed(begin: float, length: float, z: float) -> tuple[float, float]:
     }
     ground = Scene.of("block", [block], finish=(0.0, 9.0)).ground
     under, row = Footing(body_model(Humanoid.default()), ground).underfoot, np.zeros(WITH_FEET)
-    ahead, (height, _) = farther(under, WHO, row, LEFT, (float(GAIT.legs[LEFT, 3]), z, 0.0))
+    ahead, (height, _) = farther(under, WHO, row, LEFT, (float(GAIT.legs[LEFT, 3]), z, 0.0), deepest)
     return ahead, height
 
 
@@ -58,6 +58,18 @@ def test_a_foot_across_an_edge_lands_as_little_farther_as_it_has_to(over: float)
     assert math.isclose(height, RISE)
     assert abs(over) - 1e-9 <= abs(ahead) <= abs(over) + 0.03
     assert ahead * over < 0.0
+
+
+def test_a_foot_that_could_step_over_a_tread_goes_back_to_it() -> None:
+    """Ahead of the block it would stand whole too, and nearer, but deeper than it should."""
+    begin, length = 0.5, 0.4
+    z = begin + length + 0.03
+    ahead, height = landed(begin, length, z)
+    assert ahead > 0.0
+    assert abs(height) < 1e-9
+    ahead, height = landed(begin, length, z, 0.5 * RISE)
+    assert ahead < 0.0
+    assert math.isclose(height, RISE)
 
 
 def test_a_foot_on_a_block_shorter_than_itself_stands_on_its_ball() -> None:

@@ -39,7 +39,8 @@ _PLACES = 8  # from the ankle to where toes begin
 _TOES = 0.03  # metres of a standard leg, before the ball: with these on the ground it does not slide as it rolls
 # How well a foot stands: on ankle, ball and toes, without toes, on its ball, with so many of these places and more in
 # the air, or nowhere.
-_WHOLE, _NO_TOES, _ON_BALL, _IN_AIR, _NOWHERE = 0, 1, 2, 3, _PLACES + 5
+_WHOLE, _NO_TOES, _ON_BALL, _IN_AIR, _NOWHERE = 0, 1, 2, 3, _PLACES + 8
+_DOWN_TWO, _STEP = _IN_AIR, 0.25  # how much worse it stands deeper than a step; metres of a standard leg
 _BALL, _HEEL = 6, 7  # columns of `GaitShape.legs`
 
 
@@ -92,8 +93,12 @@ def _rank(under: Underfoot, who: Stepper, row: Floats, side: int, foot: Place) -
 
 
 @inner_exact_kernel
-def farther_onto(under: Underfoot, who: Stepper, row: Floats, side: int, goal: Place) -> tuple[float, Lie]:
+def farther_onto(
+    under: Underfoot, who: Stepper, row: Floats, side: int, goal: Place, deepest: float
+) -> tuple[float, Lie]:
     """How much farther ahead a foot has to land so that it stands on a tread and not across its edge, metres.
+
+    And on the next tread, not on the one after it: no deeper than at that height, where it can be.
 
     As little as possible. Where that is not had within a few centimetres its toes hang in the air, or it stands on its
     ball, over which it rolls; where it does not do so either, it goes a little farther, and as little of it as can be
@@ -103,6 +108,7 @@ def farther_onto(under: Underfoot, who: Stepper, row: Floats, side: int, goal: P
     for k in range(2 * _FARTHEST + 1):
         ahead = _SHIFT * who.scale * ((k + 1) // 2) * (1.0 if k % 2 == 0 else -1.0)
         rank, lie = _rank(under, who, row, side, _moved(goal, ahead))
+        rank += _DOWN_TWO if lie[0] < deepest else 0
         if rank < best:
             best, farther, lies = rank, ahead, lie
         if best == _WHOLE or (best <= _ON_BALL and k >= 2 * _TRIED):
@@ -123,15 +129,15 @@ def set_landings(
     carry(before, root, row)
     for side in range(2):
         foot, at, lie = row[ROOT_STATE + FOOT * side :], RISES + 2 * side, (NO_GROUND, 0.0)
-        twin, other = row[ROOT_STATE + FOOT * (1 - side) :], RISES + 2 * (1 - side)
+        twin, stood = row[ROOT_STATE + FOOT * (1 - side) :], before[RISES + 2 * (1 - side)] + before[HEIGHT]
         place = foot[X], foot[Z], foot[YAW]
         if foot[SWING] > 0.0:
             left = max(time_to_landing(own, legs, stride, side, row, foot, twin, 0.0), 0.0)
             place = landing_place(who, side, row, twin, coming, left, 0.0, later)
             if level_there(under, row, foot, place) <= NO_GROUND:
-                lands[side, FARTHER], lie = farther_onto(under, who, row, side, place)
+                lands[side, FARTHER], lie = farther_onto(under, who, row, side, place, stood - _STEP * scale)
                 apart = math.hypot(place[0] - twin[X], place[1] - twin[Z])
-                falls = before[other] + before[HEIGHT] - lie[0] - math.tan(max(lie[1], 0.0)) * apart
+                falls = stood - lie[0] - math.tan(max(lie[1], 0.0)) * apart
                 lands[side, LOWER] = falls if lie[0] > NO_GROUND else 0.0
                 place = _moved(place, lands[side, FARTHER])
         elif level_there(under, row, foot, place) <= NO_GROUND:
