@@ -5,6 +5,7 @@
 SHELL := /bin/sh
 VENV := .venv
 BIN := $(VENV)/bin
+READY := $(VENV)/kernels $(VENV)/page
 # Most of what comes along is never imported; bytecode of the rest is made, and kept, when it first is.
 PIP_INSTALL := $(BIN)/python -m pip install --no-compile
 PYTHON ?= $(shell for p in python3.14 python3.13 python3.12 python3.11 python3; do \
@@ -23,7 +24,9 @@ help:
 run: env
 	@$(BIN)/elbowroom play $(ARGS)
 
-env: $(VENV)/installed
+# Kernels keep processors busy, the page mostly waits for a registry: so the two are made side by side.
+env: $(VENV)/library
+	@$(MAKE) --no-print-directory --jobs 2 $(READY)
 
 $(VENV)/made:
 	@test -n "$(PYTHON)" || { echo "Elbowroom needs Python 3.11 or newer: sudo apt install python3 python3-venv"; exit 1; }
@@ -32,13 +35,19 @@ $(VENV)/made:
 	@$(PIP_INSTALL) --quiet --upgrade pip
 	@touch $@
 
-$(VENV)/library: $(VENV)/made pyproject.toml hatch_build.py $(WEB_SOURCES)
-	@echo "==> Installing Elbowroom and building its page"
-	@$(PIP_INSTALL) --editable .
+$(VENV)/library: $(VENV)/made pyproject.toml hatch_build.py
+	@echo "==> Installing Elbowroom"
+	@ELBOWROOM_SKIP_CLIENT=1 $(PIP_INSTALL) --editable .
 	@$(BIN)/python -m compileall -q src
 	@touch $@
 
-$(VENV)/installed: $(VENV)/library
+$(VENV)/page: $(VENV)/library $(WEB_SOURCES)
+	@echo "==> Building its page"
+	@$(BIN)/python -m pip wheel --quiet --no-deps --wheel-dir $(VENV)/wheel .
+	@rm -r $(VENV)/wheel
+	@touch $@
+
+$(VENV)/kernels: $(VENV)/library
 	@echo "==> Compiling its kernels (some three minutes the first time)"
 	@$(BIN)/elbowroom compile
 	@touch $@
@@ -51,7 +60,7 @@ $(VENV)/developer: $(VENV)/library
 # What keeps processors busy, or waits for a registry, goes side by side. Tests fill both processors by themselves: with
 # those in a browser beside them all take half as long again.
 test: $(VENV)/library
-	@$(MAKE) --no-print-directory --jobs 3 --output-sync=target $(VENV)/installed lint web-test browser-tools
+	@$(MAKE) --no-print-directory --jobs 3 --output-sync=target $(READY) lint web-test browser-tools
 	@$(MAKE) --no-print-directory unit
 	@$(MAKE) --no-print-directory --jobs 2 browser types
 	@echo "==> All tests passed"
@@ -65,15 +74,15 @@ types: $(VENV)/developer
 	@echo "==> Types"
 	@$(BIN)/mypy
 
-unit: $(VENV)/installed $(VENV)/developer
+unit: $(READY) $(VENV)/developer
 	@echo "==> Tests"
 	@$(BIN)/python -m pytest --ignore tests/browser -m "not long" -n 3 --dist loadfile $(ARGS)
 
-test-long: $(VENV)/installed $(VENV)/developer
+test-long: $(READY) $(VENV)/developer
 	@echo "==> Long walks"
 	@$(BIN)/python -m pytest -m long -n 2 --dist loadfile $(ARGS)
 
-fuzz: $(VENV)/installed $(VENV)/developer
+fuzz: $(READY) $(VENV)/developer
 	@echo "==> Damaged files for every reader, each reader in a bounded process of its own"
 	@$(BIN)/python tools/fuzz_readers.py $(ARGS)
 
@@ -86,7 +95,7 @@ browser-tools: $(VENV)/developer
 	@sh tools/install_browser.sh
 	@sh tools/install_judges.sh $(BIN)/python
 
-browser: browser-tools $(VENV)/installed
+browser: browser-tools $(READY)
 	@echo "==> Tests in a real browser"
 	@$(BIN)/python -m pytest tests/browser -m "not long" -n 2 --dist worksteal $(ARGS)
 
@@ -94,7 +103,7 @@ docs: $(VENV)/developer
 	@echo "==> Pages in site/index.html"
 	@$(BIN)/python -m mkdocs build --strict --quiet
 
-pictures: $(VENV)/installed $(VENV)/developer
+pictures: $(READY) $(VENV)/developer
 	@echo "==> Pictures of README and docs (some minutes)"
 	@sh tools/install_browser.sh
 	@$(BIN)/python tools/make_pictures.py
@@ -109,7 +118,7 @@ pictures: $(VENV)/installed $(VENV)/developer
 	@if test -n "$(WALKS)"; then $(BIN)/python tools/make_walks_pictures.py $(WALKS); \
 	else echo "walks.png stays as it is: name a dataset, make pictures WALKS=walks"; fi
 
-strangers: browser-tools $(VENV)/installed
+strangers: browser-tools $(READY)
 	@echo "==> Other programs read what we export (some minutes, and 1 GB the first time)"
 	@$(BIN)/python hatch_build.py ci --no-audit --no-fund --loglevel=error
 	@$(BIN)/python tools/strangers $(ARGS)
