@@ -15,13 +15,19 @@ from elbowroom.geometry import quaternion
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
-# Degrees that thigh (forward), knee, toes and elbow of both sides are bent: standing, in mid-stride (left, right) with
-# arms that swing or fold, on a high step (left, right), crouching.
-_STRAIGHT = (0.0, 0.0, 0.0, 0.0)
-_AHEAD, _BEHIND = (30.0, 12.0, 25.0, 30.0), (-18.0, 35.0, 62.0, 70.0)
-_RAISED, _CROUCHED = (60.0, 80.0, 10.0, 30.0), (55.0, 90.0, 0.0, 110.0)
+# Degrees that thigh (forward), knee, ankle (toes up), toes and elbow of both sides are bent: standing, in mid-stride
+# (left, right) with arms that swing or fold, on a high step (left, right), crouching.
+_STRAIGHT = (0.0, 0.0, 0.0, 0.0, 0.0)
+_AHEAD, _BEHIND = (30.0, 12.0, -8.0, 25.0, 30.0), (-18.0, 35.0, -20.0, 62.0, 70.0)
+_RAISED, _CROUCHED = (60.0, 80.0, 15.0, 10.0, 30.0), (55.0, 90.0, 35.0, 0.0, 110.0)
 _X, _Y = 0, 1
-_BENT = {"UpperLeg": (_X, 0, -1.0), "LowerLeg": (_X, 1, 1.0), "Toes": (_X, 2, -1.0), "LowerArm": (_Y, 3, 1.0)}
+_BENT = {
+    "UpperLeg": (_X, 0, -1.0),
+    "LowerLeg": (_X, 1, 1.0),
+    "Foot": (_X, 2, -1.0),
+    "Toes": (_X, 3, -1.0),
+    "LowerArm": (_Y, 4, 1.0),
+}
 _POSES = (
     (_STRAIGHT, _STRAIGHT),
     (_AHEAD, _BEHIND),
