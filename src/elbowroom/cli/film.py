@@ -13,7 +13,7 @@ from elbowroom.cli.telling.first_run import compile_first
 from elbowroom.cli.telling.output import print_json, progress_bar
 from elbowroom.cli.telling.spoken import said
 from elbowroom.errors import InputError
-from elbowroom.film.settings import CAMERAS, Look, check_output
+from elbowroom.film.settings import CAMERAS, Look, check_output, drawn_scale
 
 EXAMPLES = (
     "Examples:  elbowroom film run.elbow -o walk.webm --camera front  |  elbowroom film run.elbow -o sheet.png --sheet"
@@ -54,7 +54,7 @@ def film(
         with (
             progress_bar(said("Filming"), 1.0, quiet) as bar,
             served(library) as url,
-            filmed_page(url, look) as page,
+            filmed_page(url, look, drawn_scale(output)) as page,
         ):
             seconds = page.duration
             count = write_film(page, output, rate, speed, lambda done, all_: bar.move(done / all_, f"{done} of {all_}"))

@@ -12,11 +12,10 @@ from PIL import Image
 from elbowroom.errors import InputError
 from elbowroom.film.gif import write_gif
 from elbowroom.film.page import FilmedPage
-from elbowroom.film.settings import MOMENTS
+from elbowroom.film.settings import ACROSS, MOMENTS
 from elbowroom.film.webm import Packet, write_webm
 
 MOST_PICTURES = 20_000
-_ACROSS = 4
 
 Progress = Callable[[int, int], object]
 
@@ -85,14 +84,13 @@ def _write_mp4(page: FilmedPage, path: Path, fps: float, pictures: Pictures) -> 
 
 def _write_sheet(page: FilmedPage, path: Path, progress: Progress) -> int:
     """Sixteen moments, evenly spaced, in one picture of the page's size."""
-    sheet = None
+    width, height = (length // ACROSS for length in page.size)
+    sheet = Image.new("RGB", (width * ACROSS, height * ACROSS))
     for number in range(MOMENTS):
         progress(number, MOMENTS)
-        whole = _image(page.picture(page.duration * number / (MOMENTS - 1)))
-        tile = whole.resize((whole.width // _ACROSS, whole.height // _ACROSS), Image.Resampling.LANCZOS)
-        sheet = sheet or Image.new("RGB", (tile.width * _ACROSS, tile.height * _ACROSS))
-        sheet.paste(tile, (tile.width * (number % _ACROSS), tile.height * (number // _ACROSS)))
-    assert sheet is not None
+        drawn = _image(page.picture(page.duration * number / (MOMENTS - 1)))
+        tile = drawn.resize((width, height), Image.Resampling.LANCZOS)
+        sheet.paste(tile, (width * (number % ACROSS), height * (number // ACROSS)))
     sheet.save(path)
     return MOMENTS
 

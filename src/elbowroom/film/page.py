@@ -134,8 +134,11 @@ class FilmedPage:
 
 
 @contextmanager
-def filmed_page(url: str, look: Look) -> Iterator[FilmedPage]:
-    """The page of a server in a headless browser; raises `InputError` where there is none."""
+def filmed_page(url: str, look: Look, scale: float = 1.0) -> Iterator[FilmedPage]:
+    """The page of a server in a headless browser, laid out at the look's size and drawn at `scale` of it.
+
+    Raises `InputError` where there is no browser, or it draws nothing.
+    """
     try:
         from playwright.sync_api import Error, TimeoutError, sync_playwright
     except ImportError:
@@ -150,7 +153,10 @@ def filmed_page(url: str, look: Look) -> Iterator[FilmedPage]:
         except Error as error:
             raise InputError(f"{browser_path()} does not start: {str(error).splitlines()[0]}") from None
         page = browser.new_page(
-            viewport={"width": width, "height": height}, bypass_csp=True, reduced_motion="reduce", device_scale_factor=1
+            viewport={"width": width, "height": height},
+            bypass_csp=True,
+            reduced_motion="reduce",
+            device_scale_factor=scale,
         )
         page.set_default_timeout(1000.0 * _PATIENCE)
         try:

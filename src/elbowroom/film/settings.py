@@ -10,7 +10,8 @@ CAMERAS = ("behind", "side", "front", "above", "orbit", "shoulder")
 QUALITIES = ("high", "medium", "low")
 OVERLAYS = ("capsules", "path", "ghosts", "goal", "nearest", "plan", "footprints")  # as the page has them
 KINDS = (".mp4", ".webm", ".gif", ".png")
-MOMENTS = 16  # of a sheet
+ACROSS = 4  # pictures beside one another on a sheet, and below
+MOMENTS = ACROSS**2  # of a sheet
 _SMALLEST, _LARGEST = 64, 4096  # pixels
 
 
@@ -37,6 +38,11 @@ class Look:
 def _check(name: str, value: str, known: tuple[str, ...]) -> None:
     if value not in known:
         raise InputError(f"--{name} {value[:40]}: there are {', '.join(known)}")
+
+
+def drawn_scale(path: Path) -> float:
+    """How large pictures are drawn, as a part of a film's size: those of a sheet no larger than it shows them."""
+    return 1.0 / ACROSS if path.suffix.lower() == ".png" else 1.0
 
 
 def check_output(path: Path) -> None:
