@@ -69,7 +69,8 @@ export function exposeState(app: App): void {
 }
 
 function snapshot(app: App): AppState {
-  const { session, picture, pose, controls } = app;
+  const { session, picture, frames, controls } = app;
+  const { pose } = frames;
   const { settings, status } = session;
   const flag = (bit: number) => ((pose?.flags ?? 0) & bit) !== 0;
   return {
@@ -77,8 +78,8 @@ function snapshot(app: App): AppState {
     connection: session.state,
     timesOpened: session.timesOpened,
     framesReceived: session.framesReceived,
-    framesDrawn: app.frames.drawn,
-    fps: app.stats.fps,
+    framesDrawn: frames.drawn,
+    fps: frames.stats.fps,
     root: pose && { x: pose.x, z: pose.z, heading: pose.heading },
     feet: pose && picture.onScreen([pose.x, pose.y, pose.z]),
     head: pose && picture.onScreen([pose.x, pose.y + picture.height, pose.z]),

@@ -22,7 +22,7 @@ function page(): Told {
     menu: { addScene: () => undefined, addAvatar: () => undefined, clips: { add: () => undefined } },
     notices: { show: (level: string, said: string) => events.push(`${level}: ${said}`) },
     veil: { upload: (name: string | null, at?: number, all?: number) => events.push(name === null ? "veil off" : `veil ${name} ${at}/${all}`) },
-    configure: (change: object) => events.push(`configure ${JSON.stringify(change)}`),
+    address: { configure: (change: object) => events.push(`configure ${JSON.stringify(change)}`) },
   };
   return { events, parts: parts as unknown as ArrivalsParts };
 }

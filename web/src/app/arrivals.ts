@@ -3,11 +3,11 @@
 import { isPrivate } from "../address";
 import { uploadFile } from "../avatar/upload";
 import type { Uploaded } from "../generated/messages";
-import type { Session } from "../net/session";
 import { text } from "../texts/texts";
 import type { Menu } from "../ui/menu";
 import type { Notices } from "../ui/notices";
 import type { Veil } from "../ui/veil";
+import type { AddressBar } from "./address_bar";
 import { tooLarge } from "./file_size";
 import type { Modes } from "./modes";
 import { words } from "./words";
@@ -18,7 +18,7 @@ export interface ArrivalsParts {
   readonly menu: Menu;
   readonly notices: Notices;
   readonly veil: Veil;
-  configure(change: Parameters<Session["configure"]>[0]): void;
+  readonly address: AddressBar;
 }
 
 /** Something that is on its way to the page: what to call it, and what takes it in. */
@@ -89,16 +89,16 @@ export class Arrivals {
     const { menu, notices } = this.parts;
     if (scene) {
       menu.addScene(scene.name, sceneTitle(scene.title));
-      this.parts.configure({ scene: scene.name });
+      this.parts.address.configure({ scene: scene.name });
     }
     menu.clips.add(clips);
     if (avatar) {
       this.avatars.set(avatar.id, file);
       menu.addAvatar(avatar.id, avatar.title);
-      this.parts.configure({ avatar: avatar.id });
+      this.parts.address.configure({ avatar: avatar.id });
       const brought = text(clips.length === 1 ? "app.oneClip" : "app.clips", avatar.title, clips.length);
       if (clips.length > 0) notices.show("info", brought);
-    } else if (clips[0]) this.parts.configure({ clip: clips[0].id });
+    } else if (clips[0]) this.parts.address.configure({ clip: clips[0].id });
   }
 }
 

@@ -10,10 +10,10 @@ import type { Picture } from "../picture";
 import type { Pushing } from "../pushing/pushing";
 import { nextScene } from "../results";
 import type { FinishCard, FinishDeed } from "../ui/finish_card";
-import type { Help } from "../ui/help";
 import type { Menu } from "../ui/menu";
 import type { StatusLine } from "../ui/status_line";
 import type { AddressBar } from "./address_bar";
+import type { Keys } from "./keys";
 import type { LiveWalk } from "./live_walk";
 import type { Modes } from "./modes";
 import type { Taste } from "./taste";
@@ -30,7 +30,7 @@ export interface DeedsParts {
   readonly modes: Modes;
   readonly address: AddressBar;
   readonly menu: Menu;
-  readonly help: Help;
+  readonly keys: Keys;
   readonly pointer: PointerInput;
   readonly somewhere: GoingSomewhere;
   readonly pushing: Pushing;
@@ -101,7 +101,7 @@ function walking({ session, modes, statusLine, finishCard, somewhere, pushing, t
 
 /** What is done to picture and panels. */
 function looking(parts: DeedsParts): Record<Exclude<Deed, Walking>, () => void> {
-  const { picture, taste, address, pointer, menu, help, finishCard, view } = parts;
+  const { picture, taste, address, pointer, menu, keys, finishCard, view } = parts;
   return {
     cameraMode: () => taste.toggleSteering(),
     recenter: () => picture.camera.recenter(),
@@ -117,7 +117,7 @@ function looking(parts: DeedsParts): Record<Exclude<Deed, Walking>, () => void> 
     },
     inset: () => taste.prefer({ inset: !taste.preferences.inset }),
     share: () => address.share(),
-    help: () => help.toggle(),
+    help: () => keys.help.toggle(),
     escape: () => {
       finishCard.hide();
       taste.setBare(false);

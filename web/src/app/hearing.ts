@@ -3,12 +3,10 @@
 import type {
   AvatarMessage, Catalog, ClipMessage, Crossed, Going, Loading, Notice, Plan, PoseFrame, Pushed, SceneMessage, Settings, Status,
 } from "../generated/messages";
-import type { FrameStats } from "../frame_stats";
 import type { GoingSomewhere } from "../going/going";
 import type { GuidedTour } from "../going/tour";
 import type { Controls } from "../input/controls";
 import type { ConnectionState } from "../net/connection";
-import type { ShownPose } from "../net/pose_timeline";
 import type { Session, SessionListener } from "../net/session";
 import type { Picture } from "../picture";
 import type { Pushing } from "../pushing/pushing";
@@ -23,8 +21,10 @@ import type { StatusLine } from "../ui/status_line";
 import type { Veil } from "../ui/veil";
 import type { AddressBar } from "./address_bar";
 import type { Arrivals } from "./arrivals";
+import type { Frames } from "./frames";
 import type { LiveWalk } from "./live_walk";
 import type { Modes } from "./modes";
+import type { Subscription } from "./subscription";
 import type { Taste } from "./taste";
 import { sceneTitle } from "../texts/scene_titles";
 
@@ -47,9 +47,8 @@ export interface HearingParts {
   readonly statusLine: StatusLine;
   readonly finishCard: FinishCard;
   readonly best: BestTimes;
-  readonly stats: FrameStats;
-  readonly pose: ShownPose | null;
-  subscribe(): void;
+  readonly frames: Frames;
+  readonly subscription: Subscription;
 }
 
 export class Hearing implements SessionListener {
@@ -69,7 +68,7 @@ export class Hearing implements SessionListener {
   settings(settings: Settings): void {
     this.parts.menu.showSettings(settings);
     this.parts.modes.noteLive();
-    this.parts.subscribe();
+    this.parts.subscription.renew();
     this.parts.address.show();
   }
 
@@ -97,7 +96,7 @@ export class Hearing implements SessionListener {
     modes.noteLive();
     showAvatarAbout(message);
     menu.addAvatar(message.id, message.title);
-    this.parts.subscribe();
+    this.parts.subscription.renew();
     if (!modes.replay.active) live.dress();
   }
 
@@ -119,7 +118,7 @@ export class Hearing implements SessionListener {
   }
 
   status(status: Status): void {
-    const { picture, session, stats, pose, hud, taste } = this.parts;
+    const { picture, session, frames: { stats, pose }, hud, taste } = this.parts;
     picture.world.markBlocking(status.blocked?.obstacles ?? []);
     const page = {
       fps: stats.fps, frameMsP50: stats.percentileMs(0.5), frameMsP95: stats.percentileMs(0.95),

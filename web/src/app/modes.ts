@@ -12,6 +12,7 @@ import { byId } from "../ui/dom";
 import type { FinishCard } from "../ui/finish_card";
 import type { Menu } from "../ui/menu";
 import type { Notices } from "../ui/notices";
+import type { AddressBar } from "./address_bar";
 import type { LiveWalk } from "./live_walk";
 import { words } from "./words";
 
@@ -23,7 +24,7 @@ export interface ModesParts {
   readonly notices: Notices;
   readonly finishCard: FinishCard;
   readonly live: LiveWalk;
-  configure(change: Parameters<Session["configure"]>[0]): void;
+  readonly address: AddressBar;
 }
 
 export class Modes {
@@ -46,7 +47,7 @@ export class Modes {
       closed: () => this.goOnLive(),
       walkIn: ({ name, title }) => {
         parts.menu.addScene(name, title);
-        parts.configure({ scene: name });
+        parts.address.configure({ scene: name });
       },
     });
   }

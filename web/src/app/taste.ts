@@ -10,7 +10,8 @@ import type { Menu } from "../ui/menu";
 
 const DEFAULT_OVERLAYS: readonly OverlayName[] = ["path", "ghosts", "nearest"];
 
-export interface TasteParts {
+/** What shows what is preferred, and who is told of it. */
+export interface TasteHost {
   readonly picture: Picture;
   readonly menu: Menu;
   /** Other overlays are shown. */
@@ -23,7 +24,7 @@ export class Taste {
   private readonly dark = window.matchMedia("(prefers-color-scheme: dark)");
   private lastOverlays: readonly OverlayName[] = DEFAULT_OVERLAYS;
 
-  constructor(readonly preferences: Preferences, private readonly parts: TasteParts) {
+  constructor(readonly preferences: Preferences, private readonly host: TasteHost) {
     this.applyTheme();
     this.dark.addEventListener("change", () => this.applyTheme());
     this.showPanels();
@@ -31,7 +32,7 @@ export class Taste {
 
   prefer(change: Partial<Preferences>): void {
     const { preferences } = this;
-    const { menu, picture } = this.parts;
+    const { menu, picture } = this.host;
     Object.assign(preferences, change);
     for (const name of ["steering", "quality", "theme"] as const) menu.showPreference(name, preferences[name]);
     this.showPanels();
@@ -48,7 +49,7 @@ export class Taste {
 
   /** From behind as the user prefers it; all other cameras show the avatar walk the way it faces. */
   get steering(): SteeringMode {
-    return this.parts.picture.camera.viewName === "behind" ? this.preferences.steering : "tank";
+    return this.host.picture.camera.viewName === "behind" ? this.preferences.steering : "tank";
   }
 
   toggleSteering(): void {
@@ -62,14 +63,14 @@ export class Taste {
 
   /** Hides or shows all panels. */
   setBare(bare: boolean): void {
-    const { menu } = this.parts;
+    const { menu } = this.host;
     document.body.classList.toggle("bare", bare);
     menu.setOpen(menu.isOpen);
   }
 
   showCamera(name: ViewName): void {
-    this.parts.picture.camera.show(name);
-    this.parts.menu.showView(name);
+    this.host.picture.camera.show(name);
+    this.host.menu.showView(name);
   }
 
   overlay(name: OverlayName, on: boolean): void {
@@ -95,13 +96,13 @@ export class Taste {
   }
 
   private overlaysChanged(): void {
-    this.parts.menu.showOverlays(this.preferences.overlays);
+    this.host.menu.showOverlays(this.preferences.overlays);
     storePreferences(this.preferences);
-    this.parts.overlaysChanged();
+    this.host.overlaysChanged();
   }
 
   private showPanels(): void {
-    this.parts.menu.showPanels(this.preferences);
+    this.host.menu.showPanels(this.preferences);
     byId("hud", HTMLElement).hidden = !this.preferences.hud;
     byId("inset", HTMLElement).hidden = !this.preferences.inset;
   }
@@ -111,7 +112,7 @@ export class Taste {
     const shown = theme === "auto" ? (this.dark.matches ? "dark" : "light") : theme;
     document.documentElement.dataset["theme"] = shown;
     document.querySelector('meta[name="theme-color"]')?.setAttribute("content", shown === "dark" ? "#2a3546" : "#e6e5df");
-    this.parts.picture.setTheme(shown);
-    this.parts.repainted();
+    this.host.picture.setTheme(shown);
+    this.host.repainted();
   }
 }
