@@ -8,6 +8,7 @@ import typer
 
 from elbowroom.cli.options import clips as clip_options
 from elbowroom.cli.options.arguments import check_arguments, check_file
+from elbowroom.cli.options.serving import OpenPage, Port
 from elbowroom.cli.telling.output import print_json
 from elbowroom.errors import InputError
 
@@ -34,8 +35,8 @@ def clips(
     unit: clip_options.Unit = None,
     up: clip_options.Up = None,
     fps: clip_options.Fps = None,
-    port: Annotated[int, typer.Option(help="Port of the page; the next free one if busy, 0: any.")] = 8765,
-    open_page: Annotated[bool, typer.Option("--open/--no-open", help="Open a browser, where there is one.")] = True,
+    port: Port = 8765,
+    open_page: OpenPage = True,
     json: Annotated[bool, typer.Option("--json", help="Print one JSON object, and play nothing.")] = False,
 ) -> None:
     """List the motion clips in files, with what was recognised in each, and play them on an avatar in the browser.

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 from typer.core import TyperGroup
 
+from elbowroom.cli.options.answers import Json, Quiet
 from elbowroom.cli.options.arguments import check_arguments, check_folder, check_judge
 from elbowroom.cli.options.workers import Cluster, Jobs, check_workers, chosen_workers
 from elbowroom.cli.telling.first_run import compile_first
@@ -24,6 +25,7 @@ EXAMPLES = (
     "elbowroom dataset check walks --show 7  |  elbowroom dataset report walks"
 )
 FELL_SHORT = 1
+Folder = Annotated[Path, typer.Argument(help="Folder of a dataset.")]
 
 
 class _OrMake(TyperGroup):
@@ -50,8 +52,8 @@ def make(
     walks: Annotated[int | None, typer.Option(help="How many are drawn, instead of the spec's number.")] = None,
     jobs: Jobs = None,
     cluster: Cluster = None,
-    json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
-    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress on stderr.")] = False,
+    json: Json = False,
+    quiet: Quiet = False,
 ) -> None:
     """Draw walks by a seed, walk them, have each judged by coal, and keep the clean ones in Parquet files.
 
@@ -93,14 +95,14 @@ def make(
 
 @dataset.command(epilog=EXAMPLES)
 def check(
-    folder: Annotated[Path, typer.Argument(help="Folder of a dataset.")],
+    folder: Folder,
     *,
     sample: Annotated[int, typer.Option(help="Walks that are walked again.")] = 5,
     show: Annotated[int | None, typer.Option(metavar="K", help="Open walk K on the page instead.")] = None,
     jobs: Jobs = None,
     cluster: Cluster = None,
-    json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
-    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress on stderr.")] = False,
+    json: Json = False,
+    quiet: Quiet = False,
 ) -> None:
     """Compare sums and columns, and walk a sample again, bit for bit. Exit code 1: something differs."""
     check_workers(cluster, jobs)
@@ -135,10 +137,10 @@ def check(
 
 @dataset.command(epilog=EXAMPLES)
 def report(
-    folder: Annotated[Path, typer.Argument(help="Folder of a dataset.")],
+    folder: Folder,
     *,
     out: Annotated[Path, typer.Option("--out", "-o", help="Page that is written.")] = Path("walks.html"),
-    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress on stderr.")] = False,
+    quiet: Quiet = False,
 ) -> None:
     """Draw how near, how fast and in which postures is walked, and some walks from above, on one page."""
     _check_installed()

@@ -6,7 +6,9 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from elbowroom.cli.options.answers import Json, Quiet
 from elbowroom.cli.options.arguments import check_arguments
+from elbowroom.cli.options.recording import HOW_MADE, ItsAvatar
 from elbowroom.cli.telling.first_run import compile_first
 from elbowroom.cli.telling.output import print_json, print_row, progress_bar
 from elbowroom.cli.telling.spoken import said
@@ -25,7 +27,7 @@ _SCENES = {".glb": "GLB", ".x3d": "X3D"}  # what a scene alone is written as
 
 
 def export(
-    recording: Annotated[Path | None, typer.Argument(help="A file written by `elbowroom walk --record`.")] = None,
+    recording: Annotated[Path | None, typer.Argument(help=HOW_MADE)] = None,
     *,
     scene: Annotated[str | None, typer.Option(help="A scene in place of a recording: .glb or .x3d.")] = None,
     out: Annotated[Path, typer.Option("--out", "-o", help="The file to write; its ending says the format.")],
@@ -34,11 +36,11 @@ def export(
     rest: Annotated[str | None, typer.Option(help="Rest pose: t, or a with the arms lowered.")] = None,
     unit: Annotated[str | None, typer.Option(help="m, dm, cm, mm, inch, foot, or metres as a number.")] = None,
     up: Annotated[str | None, typer.Option(help="The axis that points up: y or z.")] = None,
-    avatar: Annotated[Path | None, typer.Option(help="The avatar's file, where it is not the stock one.")] = None,
+    avatar: ItsAvatar = None,
     place: Annotated[bool, typer.Option("--place", help="GLB: put the scene beside the avatar.")] = False,
     overwrite: Annotated[bool, typer.Option("--overwrite", help="Replace the file if it exists.")] = False,
-    json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
-    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress on stderr.")] = False,
+    json: Json = False,
+    quiet: Quiet = False,
 ) -> None:
     """Write the motion of a recording as a file that other programs read: .bvh, .glb, .vrma,
     .x3d, .usda, .csv or .npz; or as a page that plays by itself: .html.

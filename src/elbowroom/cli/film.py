@@ -7,7 +7,9 @@ from typing import Annotated
 
 import typer
 
+from elbowroom.cli.options.answers import Json, Quiet
 from elbowroom.cli.options.arguments import check_arguments
+from elbowroom.cli.options.recording import ItsAvatar, RecordingFile
 from elbowroom.cli.replay import library_of
 from elbowroom.cli.telling.first_run import compile_first
 from elbowroom.cli.telling.output import print_json, progress_bar
@@ -21,7 +23,7 @@ EXAMPLES = (
 
 
 def film(
-    recording: Annotated[Path, typer.Argument(help="A file written by `elbowroom walk --record`.")],
+    recording: RecordingFile,
     *,
     output: Annotated[
         Path, typer.Option("--out", "--output", "-o", help="The film: .mp4, .webm, .gif, or a .png sheet.")
@@ -34,9 +36,9 @@ def film(
     overlays: Annotated[str, typer.Option(help="Drawn besides: none, all, capsules, footprints, ...")] = "none",
     dark: Annotated[bool, typer.Option("--dark", help="In dark colours.")] = False,
     quality: Annotated[str, typer.Option(help="high, medium or low; low is quickest.")] = "high",
-    avatar: Annotated[Path | None, typer.Option(help="The avatar's file, where it is not the stock one.")] = None,
-    json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
-    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress on stderr.")] = False,
+    avatar: ItsAvatar = None,
+    json: Json = False,
+    quiet: Quiet = False,
 ) -> None:
     """Film a recording as the page shows it, in a headless Chromium or Chrome, frame by frame on any machine."""
     check_arguments(files=[recording, avatar])

@@ -8,14 +8,14 @@ from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
 import typer
 
 from elbowroom.cli.gauntlet_place import Pieces, PlaceFile, chosen_place
+from elbowroom.cli.options.answers import Json, Quiet
 from elbowroom.cli.options.arguments import check_arguments, check_folder, check_judge
 from elbowroom.cli.options.avatar import Avatar, Bones, Height, IncludeHair, chosen_avatar, settings_by
 from elbowroom.cli.options.place import Drop, GroundHeight, Passable, Scale, UpAxis, open_scene, place_options
+from elbowroom.cli.options.walking import Planner, Queue
 from elbowroom.cli.options.workers import Cluster, Jobs, check_workers, chosen_workers
 from elbowroom.cli.telling.first_run import compile_first
 from elbowroom.cli.telling.output import (
-    PLANNER_HELP,
-    QUEUE_HELP,
     json_text,
     print_json,
     print_row,
@@ -60,8 +60,8 @@ def gauntlet(
     ground: GroundHeight = None,
     drop: Drop = None,
     passable: Passable = None,
-    planner: Annotated[str, typer.Option(help=PLANNER_HELP)] = DEFAULT_PLANNER,
-    queue: Annotated[int, typer.Option(help=QUEUE_HELP)] = 5,
+    planner: Planner = DEFAULT_PLANNER,
+    queue: Queue = 5,
     jobs: Jobs = None,
     cluster: Cluster = None,
     out: Annotated[Path | None, typer.Option(help="Folder for results; an interrupted run goes on there.")] = None,
@@ -77,8 +77,8 @@ def gauntlet(
         tuple[int, Path] | None, typer.Option(metavar="K FILE", help="Write course K as a scene file instead.")
     ] = None,
     show: Annotated[int | None, typer.Option(metavar="K", help="Open course K on the page instead.")] = None,
-    json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
-    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress on stderr.")] = False,
+    json: Json = False,
+    quiet: Quiet = False,
 ) -> None:
     """Walk random courses, each with a proof that this avatar's body can cross it, and count.
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from elbowroom.cli.inspect_place import as_json, draw_plan, look_over, print_place
+from elbowroom.cli.options.answers import Json, Quiet
 from elbowroom.cli.options.arguments import check_arguments, check_file
 from elbowroom.cli.options.place import Drop, GroundHeight, Passable, Scale, UpAxis, place_options
 from elbowroom.cli.telling.output import Bar, print_json, print_row, progress_bar
@@ -55,8 +56,8 @@ def inspect(
     drop: Drop = None,
     passable: Passable = None,
     kind: Annotated[str | None, typer.Option("--as", help="avatar or place; else the file tells.")] = None,
-    json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
-    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress on stderr.")] = False,
+    json: Json = False,
+    quiet: Quiet = False,
 ) -> None:
     """Say what is in a file. Of an avatar: bones, height, facing, collision body, clips, licence and notes.
 

@@ -7,18 +7,17 @@ import sys
 import threading
 import webbrowser
 from dataclasses import replace
-from typing import TYPE_CHECKING, Annotated
-
-import typer
+from typing import TYPE_CHECKING
 
 from elbowroom.cli.options import clips as clip_options
 from elbowroom.cli.options import vmc as vmc_options
 from elbowroom.cli.options.arguments import check_arguments
 from elbowroom.cli.options.avatar import Avatar, Bones, Height, IncludeHair, settings_by
 from elbowroom.cli.options.place import Drop, GroundHeight, Passable, Scale, is_model, open_scene, place_options
+from elbowroom.cli.options.serving import Host, OpenPage, Port
 from elbowroom.cli.options.vmc import check_vmc, stream_to
+from elbowroom.cli.options.walking import Planner, Queue, SceneName
 from elbowroom.cli.telling.first_run import compile_first
-from elbowroom.cli.telling.output import PLANNER_HELP, QUEUE_HELP, SCENE_HELP
 from elbowroom.cli.telling.spoken import said
 from elbowroom.clips.style_names import PLAIN_NAME
 from elbowroom.planning.names import DEFAULT_PLANNER
@@ -40,16 +39,16 @@ EXAMPLES = "Examples:  elbowroom play --scene d  |  elbowroom play --avatar alic
 
 def play(
     *,
-    host: Annotated[str, typer.Option(help="Address to listen on; 0.0.0.0 lets other machines in.")] = "127.0.0.1",
-    port: Annotated[int, typer.Option(help="Port; the next free one if busy, 0: any.")] = 8765,
-    open_page: Annotated[bool, typer.Option("--open/--no-open", help="Open a browser, where there is one.")] = True,
-    scene: Annotated[str, typer.Option(help=SCENE_HELP)] = "a",
+    host: Host = "127.0.0.1",
+    port: Port = 8765,
+    open_page: OpenPage = True,
+    scene: SceneName = "a",
     avatar: Avatar = None,
     bones: Bones = None,
     height: Height = None,
     include_hair: IncludeHair = False,
-    planner: Annotated[str, typer.Option(help=PLANNER_HELP)] = DEFAULT_PLANNER,
-    queue: Annotated[int, typer.Option(help=QUEUE_HELP)] = 5,
+    planner: Planner = DEFAULT_PLANNER,
+    queue: Queue = 5,
     scale: Scale = None,
     ground: GroundHeight = None,
     drop: Drop = None,

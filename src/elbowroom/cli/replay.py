@@ -7,7 +7,9 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from elbowroom.cli.options.answers import Json, Quiet
 from elbowroom.cli.options.arguments import check_arguments
+from elbowroom.cli.options.recording import ItsAvatar, RecordingFile
 from elbowroom.cli.play import serve_until_interrupted
 from elbowroom.cli.telling.first_run import compile_first
 from elbowroom.cli.telling.output import print_json, progress_bar
@@ -24,14 +26,14 @@ _LIVE = "recorded live, where plans came when they were ready: the file shows wh
 
 
 def replay(
-    recording: Annotated[Path, typer.Argument(help="A file written by `elbowroom walk --record`.")],
+    recording: RecordingFile,
     *,
-    avatar: Annotated[Path | None, typer.Option(help="The avatar's file, where it is not the stock one.")] = None,
+    avatar: ItsAvatar = None,
     show: Annotated[bool, typer.Option("--show", help="Show what was recorded on the page, with a timeline.")] = False,
     port: Annotated[int, typer.Option(help="With --show: port; the next free one if busy, 0: any.")] = 8765,
     open_page: Annotated[bool, typer.Option("--open/--no-open", help="With --show: open a browser.")] = True,
-    json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
-    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress on stderr.")] = False,
+    json: Json = False,
+    quiet: Quiet = False,
 ) -> None:
     """Run the recorded commands again and compare every frame, bit for bit. Exit code 0: identical and whole, 1: not.
 

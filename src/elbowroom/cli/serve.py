@@ -9,10 +9,11 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from elbowroom.cli.options.arguments import check_arguments
+from elbowroom.cli.options.serving import Host, Port
+from elbowroom.cli.options.walking import Planner, Queue, SceneName
 from elbowroom.cli.options.workers import check_workers
 from elbowroom.cli.play import tell_openness
 from elbowroom.cli.telling.first_run import compile_first
-from elbowroom.cli.telling.output import PLANNER_HELP, QUEUE_HELP, SCENE_HELP
 from elbowroom.cli.telling.spoken import said
 from elbowroom.errors import InputError
 from elbowroom.planning.names import DEFAULT_PLANNER
@@ -32,13 +33,13 @@ def serve(
     cluster: Annotated[
         str, typer.Option(metavar="local|HOST:PORT", help="Ray cluster: one of this machine, or one that runs.")
     ] = "local",
-    host: Annotated[str, typer.Option(help="Address to listen on; 0.0.0.0 lets other machines in.")] = "127.0.0.1",
-    port: Annotated[int, typer.Option(help="Port; the next free one if busy, 0: any.")] = 8765,
+    host: Host = "127.0.0.1",
+    port: Port = 8765,
     servers: Annotated[int, typer.Option(min=0, max=64, help="Servers on each node; 0: one for each core.")] = 0,
-    scene: Annotated[str, typer.Option(help=SCENE_HELP)] = "a",
+    scene: SceneName = "a",
     avatar: Annotated[Path | None, typer.Option(help="The avatar that sessions begin with (GLB, VRM).")] = None,
-    planner: Annotated[str, typer.Option(help=PLANNER_HELP)] = DEFAULT_PLANNER,
-    queue: Annotated[int, typer.Option(help=QUEUE_HELP)] = 5,
+    planner: Planner = DEFAULT_PLANNER,
+    queue: Queue = 5,
 ) -> None:
     """Serve the page to many users, from many machines. Ctrl-C ends it.
 

@@ -6,30 +6,42 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from elbowroom.cli.options.answers import Json, Quiet
 from elbowroom.cli.options.arguments import check_arguments, check_folder
+from elbowroom.cli.options.lists import names_in, whole_numbers_in
 from elbowroom.cli.options.workers import Cluster, Jobs, check_workers, chosen_workers
 from elbowroom.cli.telling.first_run import compile_first
 from elbowroom.cli.telling.output import json_text, print_json, progress_bar, write_text
 from elbowroom.cli.telling.time_left import time_left_bar
-from elbowroom.errors import InputError
 from elbowroom.experiment.table1.settings import Table1Settings
 from elbowroom.planning.names import FIGURE6
 
 if TYPE_CHECKING:
     from elbowroom.experiment.parallel import Workers
     from elbowroom.experiment.table1.table import Table1
-EXAMPLES = (
-    "Examples:  elbowroom table1 --scenes a,d --queues 3,5 --seeds 3  |  elbowroom table1 --seeds 20 --out results"
-)
+EXAMPLES = "Examples:  elbowroom table1 --scene a,d --queue 3,5 --seeds 3  |  elbowroom table1 --seeds 20 --out results"
 FELL_SHORT = 1
 CSV, JSON, REPORT = "table1.csv", "table1.json", "report.html"
 
 
 def table1(
     *,
-    planner: Annotated[str, typer.Option(help="Planners to compare, with commas between: exact, figure6.")] = FIGURE6,
-    scenes: Annotated[str, typer.Option(help="Stock scenes by name, or scene files.")] = "a,b,c,d",
-    queues: Annotated[str, typer.Option(help="Sizes of the key-frame queue, |Q|: each 2 to 32.")] = "3,4,5,6,7",
+    planner: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--planner", "--planners", metavar="NAME,...", help="Planners to compare: exact, figure6 (figure6)."
+        ),
+    ] = None,
+    scene: Annotated[
+        list[str] | None,
+        typer.Option("--scene", "--scenes", metavar="NAME,...", help="Stock scenes by name, or scene files (a,b,c,d)."),
+    ] = None,
+    queue: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--queue", "--queues", metavar="N,...", help="Sizes of the key-frame queue, |Q|: each 2 to 32 (3,4,5,6,7)."
+        ),
+    ] = None,
     seeds: Annotated[int, typer.Option(help="Trials for each cell, with the seeds 1 to N; the paper has 3.")] = 20,
     jobs: Jobs = None,
     cluster: Cluster = None,
@@ -39,8 +51,8 @@ def table1(
     live: Annotated[
         bool, typer.Option("--live", help="Plan beside playback, as a session does; trials do not repeat exactly.")
     ] = False,
-    json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
-    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress on stderr.")] = False,
+    json: Json = False,
+    quiet: Quiet = False,
 ) -> None:
     """Run the paper's crossing test for every scene, queue size and planner, and set it beside the paper's Table 1.
 
@@ -48,12 +60,9 @@ def table1(
     where an interrupted one was, and more seeds add to what is there. Exit code 0: done, 1: a shown pose touched an
     obstacle (a crossing that fails is a result like any other).
     """
-    check_arguments(
-        scenes=_listed(scenes), planners=_listed(planner), queues=map(_whole, _listed(queues)), files=[avatar]
-    )
+    settings = _settings(planner, scene, queue, seeds, limit, avatar, live=live)
     check_folder(out)
     check_workers(cluster, jobs)
-    settings = _settings(planner, scenes, queues, seeds, limit, avatar, live=live)
     from elbowroom.experiment.table1.files import table_csv, table_document, trials_document
     from elbowroom.experiment.table1.table import check
 
@@ -100,21 +109,20 @@ def _run(
 
 
 def _settings(
-    planner: str, scenes: str, queues: str, seeds: int, limit: float, avatar: Path | None, *, live: bool
+    planner: list[str] | None,
+    scene: list[str] | None,
+    queue: list[str] | None,
+    seeds: int,
+    limit: float,
+    avatar: Path | None,
+    *,
+    live: bool,
 ) -> Table1Settings:
-    sizes = [_whole(size) for size in _listed(queues)]
-    return Table1Settings(_listed(planner), _listed(scenes), tuple(sizes), seeds, limit, avatar, live)
-
-
-def _listed(text: str) -> tuple[str, ...]:
-    return tuple(part.strip() for part in text.split(",") if part.strip())
-
-
-def _whole(text: str) -> int:
-    try:
-        return int(text)
-    except ValueError:
-        raise InputError(f"--queues: {text[:40]!r} is not a whole number") from None
+    planners = (FIGURE6,) if planner is None else names_in(planner)
+    scenes = Table1Settings.scenes if scene is None else names_in(scene)
+    queues = Table1Settings.queues if queue is None else whole_numbers_in("--queue", queue, "3,5")
+    check_arguments(scenes=scenes, planners=planners, queues=queues, files=[avatar])
+    return Table1Settings(planners, scenes, queues, seeds, limit, avatar, live)
 
 
 def _about(settings: Table1Settings, processes: int) -> dict[str, Any]:
@@ -143,8 +151,8 @@ def _about(settings: Table1Settings, processes: int) -> dict[str, Any]:
 def _command(settings: Table1Settings, processes: int) -> str:
     words = {
         "planner": ",".join(settings.planners),
-        "scenes": ",".join(settings.scenes),
-        "queues": ",".join(map(str, settings.queues)),
+        "scene": ",".join(settings.scenes),
+        "queue": ",".join(map(str, settings.queues)),
         "seeds": str(settings.seeds),
         "jobs": str(processes),
     }

@@ -6,12 +6,14 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from elbowroom.cli.options import clips as clip_options
+from elbowroom.cli.options.answers import Json, Quiet
 from elbowroom.cli.options.arguments import check_arguments, check_judge
 from elbowroom.cli.options.avatar import Avatar, Bones, Height, IncludeHair, settings_by
 from elbowroom.cli.options.controller import chosen_controller
 from elbowroom.cli.options.going import told_place
 from elbowroom.cli.options.place import Drop, GroundHeight, Passable, Scale, UpAxis, open_scene, place_options
-from elbowroom.cli.telling.output import PLANNER_HELP, QUEUE_HELP, SCENE_HELP, print_json, print_row
+from elbowroom.cli.options.walking import SCENE_HELP, Planner, Queue, Record
+from elbowroom.cli.telling.output import print_json, print_row
 from elbowroom.cli.telling.spoken import said
 from elbowroom.cli.telling.time_left import time_left_bar
 from elbowroom.clips.style_names import PLAIN_NAME
@@ -35,13 +37,13 @@ def tour(
     *,
     targets: Annotated[int, typer.Option(help="How many places are visited, drawn from all that can be reached.")] = 20,
     seed: Annotated[int, typer.Option(help="Draws the places, and the planner's chance.")] = 0,
-    planner: Annotated[str, typer.Option(help=PLANNER_HELP)] = DEFAULT_PLANNER,
-    queue: Annotated[int, typer.Option(help=QUEUE_HELP)] = 5,
+    planner: Planner = DEFAULT_PLANNER,
+    queue: Queue = 5,
     avatar: Avatar = None,
     bones: Bones = None,
     height: Height = None,
     include_hair: IncludeHair = False,
-    record: Annotated[Path | None, typer.Option(help="Keep the run in this file, for `elbowroom replay`.")] = None,
+    record: Record = None,
     plan: Annotated[Path | None, typer.Option(help="Draw the tour from above into this PNG.")] = None,
     judge: Annotated[bool, typer.Option(help="Let coal judge what was shown, as `elbowroom verify` does.")] = True,
     mesh: Annotated[bool, typer.Option(help="Judge the avatar's own surface too, not only its capsules.")] = True,
@@ -53,8 +55,8 @@ def tour(
     style: clip_options.Style = PLAIN_NAME,
     swing: clip_options.Swing = None,
     dodge: clip_options.Dodge = None,
-    json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
-    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress on stderr.")] = False,
+    json: Json = False,
+    quiet: Quiet = False,
 ) -> None:
     """Visit random places of a scene on foot; what was shown is judged by coal (the extra `judge`).
 

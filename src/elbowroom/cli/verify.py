@@ -1,11 +1,12 @@
 """`elbowroom verify`: the judge looks at what a recording shows."""
 
-from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from elbowroom.cli.options.answers import Json, Quiet
 from elbowroom.cli.options.arguments import check_arguments, check_judge
+from elbowroom.cli.options.recording import ItsAvatar, RecordingFile
 from elbowroom.cli.telling.first_run import compile_first
 from elbowroom.cli.telling.output import print_json, print_row
 from elbowroom.cli.telling.spoken import said
@@ -26,13 +27,13 @@ _ANGULAR = ("rad/s", "rad/s²", "rad/s³")
 
 
 def verify(
-    recording: Annotated[Path, typer.Argument(help="A file written by `elbowroom walk --record`.")],
+    recording: RecordingFile,
     *,
-    avatar: Annotated[Path | None, typer.Option(help="The avatar's file, where it is not the stock one.")] = None,
+    avatar: ItsAvatar = None,
     rate: Annotated[float, typer.Option(help="Poses a second that are judged, at least.")] = 240.0,
     mesh: Annotated[bool, typer.Option(help="Judge the avatar's own surface too, not only its capsules.")] = True,
-    json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
-    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress on stderr.")] = False,
+    json: Json = False,
+    quiet: Quiet = False,
 ) -> None:
     """Check every shown pose against every obstacle with another collision library, coal.
 

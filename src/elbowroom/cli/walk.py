@@ -8,13 +8,15 @@ import typer
 
 from elbowroom.cli.options import clips as clip_options
 from elbowroom.cli.options import vmc as vmc_options
+from elbowroom.cli.options.answers import Json, Quiet
 from elbowroom.cli.options.arguments import check_arguments
 from elbowroom.cli.options.avatar import Avatar, Bones, Height, IncludeHair, settings_by
 from elbowroom.cli.options.controller import chosen_controller
 from elbowroom.cli.options.going import TO_HELP, place_of, report_leg
 from elbowroom.cli.options.place import Drop, GroundHeight, Passable, Scale, is_model, open_scene, place_options
 from elbowroom.cli.options.vmc import check_vmc, in_time, stream_to
-from elbowroom.cli.telling.output import PLANNER_HELP, QUEUE_HELP, SCENE_HELP, Bar, print_json, print_row, progress_bar
+from elbowroom.cli.options.walking import Planner, Queue, Record, SceneName
+from elbowroom.cli.telling.output import Bar, print_json, print_row, progress_bar
 from elbowroom.cli.telling.spoken import said
 from elbowroom.clips.style_names import PLAIN_NAME
 from elbowroom.experiment.crossing_settings import CrossingSettings
@@ -41,9 +43,9 @@ _PAPERS = {True: "more than one frame in every second", False: "a second with on
 
 def walk(
     *,
-    scene: Annotated[str, typer.Option(help=SCENE_HELP)] = "a",
-    planner: Annotated[str, typer.Option(help=PLANNER_HELP)] = DEFAULT_PLANNER,
-    queue: Annotated[int, typer.Option(help=QUEUE_HELP)] = 5,
+    scene: SceneName = "a",
+    planner: Planner = DEFAULT_PLANNER,
+    queue: Queue = 5,
     seed: Annotated[int, typer.Option(help="Varies the planner's chance, the start and the user's patience.")] = 0,
     avatar: Avatar = None,
     bones: Bones = None,
@@ -51,7 +53,7 @@ def walk(
     include_hair: IncludeHair = False,
     limit: Annotated[float, typer.Option(help="Seconds that the user has for the crossing.")] = 30.0,
     to: Annotated[str | None, typer.Option(help=TO_HELP, metavar="X,Z")] = None,
-    record: Annotated[Path | None, typer.Option(help="Keep the run in this file, for `elbowroom replay`.")] = None,
+    record: Record = None,
     scale: Scale = None,
     ground: GroundHeight = None,
     drop: Drop = None,
@@ -65,8 +67,8 @@ def walk(
     vmc: vmc_options.Vmc = None,
     vmc_root: vmc_options.VmcRoot = "root",
     vmc_bundles: vmc_options.VmcBundles = True,
-    json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
-    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress on stderr.")] = False,
+    json: Json = False,
+    quiet: Quiet = False,
 ) -> None:
     """Walk an avatar through a scene, faster than real time, and print how it went.
 

@@ -1,7 +1,5 @@
 """`elbowroom bench`: what the parts cost that a frame waits for."""
 
-from typing import Annotated
-
 import typer
 
 from elbowroom.cli.bench import cluster as bench_cluster
@@ -13,6 +11,7 @@ from elbowroom.cli.bench import motion as bench_motion
 from elbowroom.cli.bench import plan as bench_plan
 from elbowroom.cli.bench import planners as bench_planners
 from elbowroom.cli.bench import steer as bench_steer
+from elbowroom.cli.options.answers import Json
 from elbowroom.cli.telling.output import print_json
 from elbowroom.experiment.bench.settings import CollisionSettings, PlanSettings
 
@@ -25,7 +24,7 @@ bench = typer.Typer(help="Measure speeds; without a command, of the collision ke
 def both(
     context: typer.Context,
     *,
-    json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
+    json: Json = False,
 ) -> None:
     """Measure speeds; without a command, of the collision kernel and of planning."""
     if context.invoked_subcommand is not None:

@@ -4,10 +4,11 @@ from typing import Annotated
 
 import typer
 
+from elbowroom.cli.options.answers import Json, Quiet
+from elbowroom.cli.options.lists import whole_numbers_in
 from elbowroom.cli.options.workers import check_workers
 from elbowroom.cli.telling.first_run import compile_first
 from elbowroom.cli.telling.output import print_json, print_row, progress_bar
-from elbowroom.errors import InputError
 
 EXAMPLES = "Examples:  elbowroom bench cluster  |  elbowroom bench cluster --workers 1,2 --courses 30 --json"
 
@@ -18,17 +19,19 @@ def cluster(
         str,
         typer.Option("--cluster", metavar="local|HOST:PORT", help="A Ray cluster: of this machine, or one that runs."),
     ] = "local",
-    workers: Annotated[str, typer.Option(help="Numbers of workers to compare.")] = "1,2,4",
+    workers: Annotated[
+        list[str] | None, typer.Option(metavar="N,...", help="Numbers of workers to compare (1,2,4).")
+    ] = None,
     level: Annotated[int, typer.Option(help="Of the courses that are walked, 1 to 5.")] = 3,
     courses: Annotated[int, typer.Option(help="How many each crew walks.")] = 12,
-    json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
-    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress on stderr.")] = False,
+    json: Json = False,
+    quiet: Quiet = False,
 ) -> None:
     """Walk the same courses with more and more workers of a Ray cluster: how busy they are, what tasks cost beside."""
     check_workers(address)
     from elbowroom.cluster.bench_settings import ClusterSettings
 
-    settings = ClusterSettings(address, _counts(workers), level, courses)
+    settings = ClusterSettings(address, whole_numbers_in("--workers", workers or ["1,2,4"], "1,2,4"), level, courses)
     compile_first(quiet=quiet)
     from elbowroom.cluster.bench import run
 
@@ -47,10 +50,3 @@ def cluster(
             "overhead": f"{crew.overhead_ms:.2f} ms a task",
         }
         print_row(f"{crew.workers} at once ({report.machine})", rows)
-
-
-def _counts(text: str) -> tuple[int, ...]:
-    try:
-        return tuple(int(part) for part in text.split(","))
-    except ValueError:
-        raise InputError(f"workers {text[:40]!r}: whole numbers with commas between them, such as 1,2,4") from None

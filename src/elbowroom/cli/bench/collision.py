@@ -4,6 +4,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from elbowroom.cli.options.answers import Json, Quiet
 from elbowroom.cli.telling.output import print_json, print_row, progress_bar
 from elbowroom.experiment.bench.settings import CollisionSettings, MeshSettings
 
@@ -20,8 +21,8 @@ def collision(
     rounds: Annotated[int, typer.Option(help="Times that each library runs; the median counts.")] = 7,
     seed: Annotated[int, typer.Option(help="Seed of the random postures and boxes.")] = 7,
     mesh: Annotated[bool, typer.Option("--mesh", help="Against a mesh of 100,000 triangles.")] = False,
-    json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
-    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress on stderr.")] = False,
+    json: Json = False,
+    quiet: Quiet = False,
 ) -> None:
     """Measure how many capsules a second are checked against boxes or a mesh, on one core, and whether others agree."""
     if mesh:

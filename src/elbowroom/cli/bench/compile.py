@@ -5,10 +5,10 @@ import tempfile
 import time
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated
 
 import typer
 
+from elbowroom.cli.options.answers import Json, Quiet
 from elbowroom.cli.telling.output import print_json, print_row, progress_bar
 
 EXAMPLES = "Examples:  elbowroom bench compile  |  elbowroom bench compile --json"
@@ -30,8 +30,8 @@ class CompileCost:
 
 def compile_(
     *,
-    json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
-    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress on stderr.")] = False,
+    json: Json = False,
+    quiet: Quiet = False,
 ) -> None:
     """Compile all kernels of a live session as the first start does; what is compiled already is left alone."""
     from dataclasses import asdict

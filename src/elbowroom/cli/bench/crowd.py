@@ -4,6 +4,8 @@ from typing import Annotated
 
 import typer
 
+from elbowroom.cli.options.answers import Json, Quiet
+from elbowroom.cli.options.lists import whole_numbers_in
 from elbowroom.cli.telling.first_run import compile_first
 from elbowroom.cli.telling.output import print_json, print_row, progress_bar
 from elbowroom.experiment.bench.settings import CrowdSettings
@@ -13,16 +15,16 @@ EXAMPLES = "Examples:  elbowroom bench crowd  |  elbowroom bench crowd --avatars
 
 def crowd(
     *,
-    avatars: Annotated[str, typer.Option(help="Sizes of the crowds.")] = "1,10,100",
+    avatars: Annotated[list[str] | None, typer.Option(metavar="N,...", help="Sizes of the crowds (1,10,100).")] = None,
     seconds: Annotated[float, typer.Option(help="Seconds for which each crowd is measured.")] = 2.4,
-    json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
-    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress on stderr.")] = False,
+    json: Json = False,
+    quiet: Quiet = False,
 ) -> None:
     """Walk and stand crowds of one avatar on one thread: memory and time to make each, and how many keep 60 Hz.
 
     They set out one after the other, so that their plans do not fall into the same frame.
     """
-    settings = CrowdSettings(_sizes(avatars), seconds)
+    settings = CrowdSettings(whole_numbers_in("--avatars", avatars or ["1,10,100"], "1,10,100"), seconds)
     from elbowroom.experiment.bench.crowd import amount, run
     from elbowroom.experiment.machine import machine_kind
 
@@ -39,12 +41,3 @@ def crowd(
             "keep 60 Hz on one core": f"{cost.at_60_hz}",
         }
         print_row(f"{cost.avatars} {cost.what} ({machine_kind()})", rows)
-
-
-def _sizes(text: str) -> tuple[int, ...]:
-    from elbowroom.errors import InputError
-
-    try:
-        return tuple(int(part) for part in text.split(","))
-    except ValueError:
-        raise InputError(f"avatars {text[:40]!r}: whole numbers with commas between them, such as 1,10,100") from None

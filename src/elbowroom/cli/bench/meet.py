@@ -4,6 +4,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from elbowroom.cli.options.answers import Json, Quiet
+from elbowroom.cli.options.lists import numbers_in
 from elbowroom.cli.options.workers import Jobs, check_workers, chosen_workers
 from elbowroom.cli.telling.first_run import compile_first
 from elbowroom.cli.telling.output import print_json, progress_bar
@@ -22,7 +24,10 @@ seconds until they had passed, in half of the meetings; ms: processor time of th
 
 def meet(
     *,
-    widths: Annotated[str | None, typer.Option(help="Of the corridors, in metres (0.95 to 1.6).")] = None,
+    width: Annotated[
+        list[str] | None,
+        typer.Option("--width", "--widths", metavar="N,...", help="Of the corridors, in metres (0.95 to 1.6)."),
+    ] = None,
     starts: Annotated[
         int, typer.Option(help="Meetings in each corridor, of each kind; meeting K has the seed S + K.")
     ] = 20,
@@ -31,15 +36,16 @@ def meet(
         bool, typer.Option("--live", help="Plan beside playback, as a session does; meetings do not repeat exactly.")
     ] = False,
     jobs: Jobs = None,
-    json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
-    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress on stderr.")] = False,
+    json: Json = False,
+    quiet: Quiet = False,
 ) -> None:
     """Let two avatars meet in corridors, from random places and at random paces: both walk, or one of them stands.
 
     Exit code 0: all passed, nobody touched or was driven back by more than a step, and with --live no frame was late;
     1: not.
     """
-    settings = MeetingSettings(WIDTHS if widths is None else _numbers(widths), starts, seed, live=live)
+    widths = WIDTHS if width is None else numbers_in("--width", width, "0.95,1.2")
+    settings = MeetingSettings(widths, starts, seed, live=live)
     check_workers(None, jobs)
     from elbowroom.experiment.machine import machine_kind
     from elbowroom.experiment.meeting.meetings import as_dict, run_meetings
@@ -54,15 +60,6 @@ def meet(
         _show(results)
     if not all(result.well and not (live and result.late) for result in results):
         raise typer.Exit(FELL_SHORT)
-
-
-def _numbers(text: str) -> tuple[float, ...]:
-    from elbowroom.errors import InputError
-
-    try:
-        return tuple(float(part) for part in text.split(","))
-    except ValueError:
-        raise InputError(f"widths {text[:40]!r}: numbers with commas between them, such as 0.95,1.2") from None
 
 
 def _show(results: "list[WidthResult]") -> None:

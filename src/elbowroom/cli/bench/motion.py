@@ -5,8 +5,10 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from elbowroom.cli.options.answers import Json, Quiet
 from elbowroom.cli.options.arguments import check_arguments, check_folder
 from elbowroom.cli.options.avatar import Avatar, Bones, Height, IncludeHair, chosen_avatar, settings_by
+from elbowroom.cli.options.lists import names_in, numbers_in
 from elbowroom.cli.telling.first_run import compile_first
 from elbowroom.cli.telling.output import print_json, print_row, progress_bar
 from elbowroom.experiment.motion.settings import MotionSettings
@@ -17,24 +19,30 @@ if TYPE_CHECKING:
     from elbowroom.experiment.motion.knees import Knees
     from elbowroom.experiment.motion.report import Gait, MotionReport
 
-EXAMPLES = """Examples:  elbowroom bench motion  |  elbowroom bench motion --case steady --speeds 1.1 --plots pictures
-|  elbowroom bench motion --avatar alice.vrm --case start --case stop --json"""
+EXAMPLES = """Examples:  elbowroom bench motion  |  elbowroom bench motion --case steady --speed 1.1 --plots pictures
+|  elbowroom bench motion --avatar alice.vrm --case start,stop --json"""
 
 
 def motion(
     *,
-    case: Annotated[list[str] | None, typer.Option(help="What to walk, such as steady, stop or gaps (all).")] = None,
-    speeds: Annotated[str, typer.Option(help="Of the steady walks, m/s.")] = "0.5,0.8,1.1,1.4,2.0",
+    case: Annotated[
+        list[str] | None,
+        typer.Option("--case", "--cases", metavar="NAME,...", help="What to walk, such as steady,stop,gaps (all)."),
+    ] = None,
+    speed: Annotated[
+        list[str] | None,
+        typer.Option("--speed", "--speeds", metavar="N,...", help="Of the steady walks, m/s (0.5,0.8,1.1,1.4,2)."),
+    ] = None,
     avatar: Avatar = None,
     bones: Bones = None,
     height: Height = None,
     include_hair: IncludeHair = False,
     plots: Annotated[Path | None, typer.Option(help="Folder for pictures of the leg's joints over a stride.")] = None,
-    json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
-    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress on stderr.")] = False,
+    json: Json = False,
+    quiet: Quiet = False,
 ) -> None:
     """Walk scripted walks and measure them as a gait laboratory does: feet, hips, joints, smoothness, narrow gaps."""
-    settings = MotionSettings(tuple(case or ()), _speeds(speeds))
+    settings = _settings(case, speed)
     check_arguments(files=[avatar, bones])
     check_folder(plots)
     reading = settings_by(bones, height, include_hair)
@@ -57,13 +65,11 @@ def motion(
         _write(plots, motion_plots(report))
 
 
-def _speeds(text: str) -> tuple[float, ...]:
-    from elbowroom.errors import InputError
-
-    try:
-        return tuple(float(part) for part in text.split(","))
-    except ValueError:
-        raise InputError(f"speeds {text[:40]!r}: numbers with commas between them, such as 0.8,1.1") from None
+def _settings(case: list[str] | None, speed: list[str] | None) -> MotionSettings:
+    cases = names_in(case or ())
+    if speed is None:
+        return MotionSettings(cases)
+    return MotionSettings(cases, numbers_in("--speed", speed, "0.8,1.1"))
 
 
 def _show(report: "MotionReport") -> None:

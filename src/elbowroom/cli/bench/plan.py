@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from elbowroom.cli.options.answers import Json, Quiet
 from elbowroom.cli.options.arguments import check_arguments, check_folder
 from elbowroom.cli.telling.first_run import compile_first
 from elbowroom.cli.telling.output import print_json, print_row, progress_bar
@@ -23,8 +24,8 @@ def plan(
     rounds: Annotated[int, typer.Option(help="How many crossings are walked.")] = 20,
     starts: Annotated[int, typer.Option(help="Further crossings, each from another start.")] = 20,
     plots: Annotated[Path | None, typer.Option(help="Folder for pictures of how the cost grows.")] = None,
-    json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
-    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress on stderr.")] = False,
+    json: Json = False,
+    quiet: Quiet = False,
 ) -> None:
     """Time every planning call of `exact`, root and upper body together, while an avatar crosses a scene."""
     settings = PlanSettings(scene=scene, key_frames=key_frames, rounds=rounds, starts=starts)

@@ -4,7 +4,9 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from elbowroom.cli.options.answers import Json, Quiet
 from elbowroom.cli.options.arguments import check_arguments
+from elbowroom.cli.options.lists import names_in, whole_numbers_in
 from elbowroom.cli.options.workers import Cluster, check_workers, chosen_workers
 from elbowroom.cli.telling.first_run import compile_first
 from elbowroom.cli.telling.output import print_json, progress_bar
@@ -13,7 +15,7 @@ from elbowroom.experiment.bench.settings import PlannersSettings
 if TYPE_CHECKING:
     from elbowroom.experiment.bench.planners import PlannersReport
 
-EXAMPLES = "Examples:  elbowroom bench planners  |  elbowroom bench planners --scene d --level 3 --trials 10 --json"
+EXAMPLES = "Examples:  elbowroom bench planners  |  elbowroom bench planners --scene c,d --level 3 --trials 10 --json"
 
 _WIDTH = 100  # characters: of the table
 _LEGEND = """planning: all of a crossing's, median of the trials; longest: the longest wait for a plan; checks, median:
@@ -23,14 +25,18 @@ judge's poses, 240 a second; away: from the natural walk, root mean square; swin
 
 def planners(
     *,
-    scene: Annotated[list[str] | None, typer.Option(help="Scenes to cross; again for more (a b c d).")] = None,
-    level: Annotated[list[int] | None, typer.Option(help="Gauntlet levels; again for more (1 2 3).")] = None,
+    scene: Annotated[
+        list[str] | None, typer.Option("--scene", "--scenes", metavar="NAME,...", help="Scenes to cross (a,b,c,d).")
+    ] = None,
+    level: Annotated[
+        list[str] | None, typer.Option("--level", "--levels", metavar="N,...", help="Gauntlet levels (1,2,3).")
+    ] = None,
     trials: Annotated[int, typer.Option(help="Seeds in a scene, straight courses of a level.")] = 3,
     limit: Annotated[float, typer.Option(help="Seconds to cross, and for the general planner to plan.")] = 30.0,
     jobs: Annotated[int, typer.Option(help="Crossings at once; 1 gives the truest times.")] = 1,
     cluster: Cluster = None,
-    json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
-    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress on stderr.")] = False,
+    json: Json = False,
+    quiet: Quiet = False,
 ) -> None:
     """Compare `figure6`, `exact` and OMPL's RRT-Connect on the same crossings, by the same judge.
 
@@ -39,9 +45,10 @@ def planners(
     """
     chosen = PlannersSettings(trials=trials, limit=limit)
     if scene is not None or level is not None:
-        chosen = PlannersSettings(tuple(scene or ()), tuple(level or ()), trials, limit)
+        levels = whole_numbers_in("--level", level or (), "1,3")
+        chosen = PlannersSettings(names_in(scene or ()), levels, trials, limit)
     check_workers(cluster, jobs)
-    check_arguments(scenes=scene or ())
+    check_arguments(scenes=() if scene is None else chosen.scenes)
     from elbowroom.experiment.bench.general import check_installed
     from elbowroom.experiment.bench.planners import amount, as_dict, run
     from elbowroom.experiment.gauntlet.scenes import load_scene

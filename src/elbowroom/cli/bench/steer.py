@@ -10,9 +10,11 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from elbowroom.cli.options.answers import Json, Quiet
+from elbowroom.cli.options.lists import names_in
 from elbowroom.cli.telling.first_run import compile_first
 from elbowroom.cli.telling.output import Bar, print_json, print_row, progress_bar
-from elbowroom.experiment.bench.settings import SteerSettings
+from elbowroom.experiment.bench.settings import STEERED, SteerSettings
 
 if TYPE_CHECKING:
     from elbowroom.cli.doctor.session_cost import SessionCost
@@ -29,19 +31,21 @@ obstacles, nodes: of the search, median and worst of a call; progress: share of 
 
 def steer(
     *,
-    scene: Annotated[list[str] | None, typer.Option(help="What to steer through; again for more (all).")] = None,
+    scene: Annotated[
+        list[str] | None, typer.Option("--scene", "--scenes", metavar="NAME,...", help="What to steer through (all).")
+    ] = None,
     rounds: Annotated[int, typer.Option(help="Walks through each, every one from another start.")] = 3,
     seconds: Annotated[float, typer.Option(help="The longest walk; with --sessions, how long to steer.")] = 15.0,
     sessions: Annotated[int, typer.Option(min=0, max=8, help="Steer so many live sessions instead.")] = 0,
-    json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
-    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress on stderr.")] = False,
+    json: Json = False,
+    quiet: Quiet = False,
 ) -> None:
     """Steer through bends, slaloms and scenes by scripted hands, and say what each planning call costs.
 
     With `--sessions`, a real server is steered by as many clients, and it is said how soon the motion that is shown is
     the one that was asked for.
     """
-    settings = SteerSettings(tuple(scene or (_LIVE if sessions else ())), seconds, rounds)
+    settings = SteerSettings(names_in(scene or (_LIVE if sessions else ()), STEERED), seconds, rounds)
     from elbowroom.experiment.bench.steer import amount, run
     from elbowroom.experiment.machine import machine_kind
 

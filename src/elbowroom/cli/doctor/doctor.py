@@ -13,6 +13,7 @@ from urllib.parse import urlsplit
 import typer
 
 from elbowroom.cli.doctor.soak_text import soak_faults, soak_rows, telling
+from elbowroom.cli.options.answers import Json
 from elbowroom.cli.options.arguments import check_arguments
 from elbowroom.cli.telling.output import print_json
 from elbowroom.errors import InputError
@@ -43,7 +44,7 @@ def doctor(
         int | None, typer.Option(metavar="N", min=1, max=1000, help="Whether N users who steer are served in time.")
     ] = None,
     at: Annotated[str | None, typer.Option(metavar="URL", help="Load this server, not one of its own.")] = None,
-    json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
+    json: Json = False,
 ) -> None:
     """Look the installation over. Exit code 0: all well, 1: a budget is exceeded or something is missing."""
     check_arguments(scenes=[scene])

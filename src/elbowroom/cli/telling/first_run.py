@@ -1,9 +1,6 @@
 """Kernels are compiled once, by the first command that needs them, and everybody sees how far that is."""
 
-from typing import Annotated
-
-import typer
-
+from elbowroom.cli.options.answers import Quiet
 from elbowroom.cli.telling.spoken import said
 from elbowroom.cli.telling.time_left import time_left_bar
 
@@ -12,7 +9,7 @@ EXAMPLES = "Examples:  elbowroom compile  |  elbowroom compile --quiet"
 
 def compile_(
     *,
-    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress on stderr.")] = False,
+    quiet: Quiet = False,
 ) -> None:
     """Compile all kernels now, one to three minutes; else the first command that needs them does it."""
     compile_first(quiet=quiet)

@@ -13,16 +13,6 @@ from rich.table import Table
 
 from elbowroom.cli.telling.spoken import said
 from elbowroom.errors import InputError
-from elbowroom.planning.names import BUILT_IN
-
-PLANNER_HELP = f"How upper-body motion is searched: {' or '.join(BUILT_IN)}."
-
-QUEUE_HELP = "How many key frames are planned ahead (the queue's size, |Q|): 2 to 32; the paper has 3 to 7."
-
-SCENE_HELP = (
-    "A scene by name (a, b, c, d, beam, doorway, traffic, shapes, empty), a course (gauntlet:5:1013), a scene file, "
-    "or a model of a place (GLB, X3D, VRML, OBJ, STL, PLY, USD)."
-)
 
 
 def print_json(result: Mapping[str, Any]) -> None:
