@@ -12,7 +12,7 @@ from elbowroom.body.root import RootState
 from elbowroom.clips.motion_set import STOCK, MotionSet
 from elbowroom.control import steering
 from elbowroom.control.feet.in_step import in_step
-from elbowroom.control.frame import Frame, Phase, PlanReport
+from elbowroom.control.frame import Frame, Phase
 from elbowroom.control.journey import Journey
 from elbowroom.control.key_frame_queue import KeyFrameQueue, Playback
 from elbowroom.control.others.neighbour import Neighbour, Walker
@@ -21,6 +21,7 @@ from elbowroom.control.others.prediction import neighbour, slimmer
 from elbowroom.control.plans.desk import ImmediateDesk
 from elbowroom.control.plans.errands import Errands
 from elbowroom.control.plans.grounds import Grounds
+from elbowroom.control.plans.last_plan import LastPlan
 from elbowroom.control.plans.lookahead import STOCK_LOOKAHEAD, Lookahead
 from elbowroom.control.plans.planning_scene import PlanningScene
 from elbowroom.control.plans.rehearsal import Held
@@ -37,7 +38,6 @@ from elbowroom.planning.motion import MotionQuery
 from elbowroom.planning.names import DEFAULT_PLANNER
 from elbowroom.planning.navigation.navigator import Navigator
 from elbowroom.planning.navigation.way import Place, Spot, Way
-from elbowroom.planning.root.plan import RootPlanKind
 from elbowroom.planning.stillness import is_still
 from elbowroom.world.obstacles.tracks.moving import Moving
 from elbowroom.world.scene import Scene, on_ground
@@ -180,12 +180,13 @@ class Controller:
         self._pushing = Pushing(self.scene)
         self._queue = KeyFrameQueue(self.settings.queue_size, self.settings.interval)
         self._errands.begin()
-        self._plan_report: PlanReport | None = None
-        self._command = Command()
-        self._stands_by = True  # whether the user wants nothing
-        self._travel: float | None = None  # radians, the heading that the last plan means to travel
-        self._flow = self._next = Phase.PLAN
-        self._blocked = self._resting = self._halting = self._vain = self._undecided = False
+        self._last = LastPlan()
+        self._wish = Command()  # what was wanted last, by the user or on a journey
+        self._flow = self._next = Phase.PLAN  # what the last turn did, and what the next one is to do
+        self._blocked = False  # no way on was found and nothing is left to play, or what is shown goes back
+        self._vain = False  # what was planned from a held pose could not be shown, where plans are dear
+        self._halting = False  # what is left to play is not wanted any more: it slows down to a stand
+        self._resting = False  # the plan changes nothing: one stands on as one stood
         self.late_plans = 0  # that could not be shown any more when they came
         self._showing = self._standing_at(self.start, self._around)
 
@@ -220,7 +221,7 @@ class Controller:
 
         From then on it shows nothing that would touch who goes by that.
         """
-        onward = self._command.forward > 0.0
+        onward = self._last.command.forward > 0.0
         model, walker = self._check.model, self._walker()
         told = neighbour(self.humanoid, model, walker, self._shown, self._queue, self._showing.follow, onward=onward)
         self._check.told = told
@@ -228,11 +229,12 @@ class Controller:
 
     def _walker(self, command: Command | None = None) -> Walker:
         """Where this avatar is, and where to it is asked to go, with what was planned for last or with a command."""
-        if self._stands_by:
+        if self._wish.idle:
             return Walker(self._shown.root[:2], np.zeros(2))
-        wanted = steering.direction(command or self._command, self._shown.root[2])
-        if self._travel is not None and not (command and changed(self._command, command)):
-            wanted = np.array([math.sin(self._travel), math.cos(self._travel)])
+        wanted = steering.direction(command or self._last.command, self._shown.root[2])
+        travel = self._last.travel
+        if travel is not None and not (command and changed(self._last.command, command)):
+            wanted = np.array([math.sin(travel), math.cos(travel)])
         return Walker(self._shown.root[:2], wanted)
 
     @property
@@ -281,17 +283,17 @@ class Controller:
 
     def _on_the_way(self, command: Command, dt: float) -> Command:
         """The user's command, or where nothing is wanted, what the journey asks for."""
-        going, plans = self._going, 0 if self._plan_report is None else self._plan_report.number
+        going = self._going
         if going is None or dt <= 0.0:
             return command
         if not command.idle:
             going.take_over()
             return command
-        return going.command(self.root, dt, stuck=self._blocked or self._walled_in(), plans=plans)
+        return going.command(self.root, dt, stuck=self._no_way_on, plans=self._last.number)
 
     def _aside(self, command: Command) -> Command:
         """What to do under a command: a step aside, where nothing is wanted and others want to pass."""
-        self._stands_by = command.idle
+        self._wish = command
         if not command.idle or not self.others or not self.assist:
             return command
         shown, free_map = self._shown, self._around.free_map
@@ -307,7 +309,7 @@ class Controller:
         if flow is Phase.RESET:
             self._reset_queue()
         if flow is not Phase.PLAY:
-            self._plan(command, at_once=flow is Phase.RESET or changed(self._command, command))
+            self._plan(command, at_once=flow is Phase.RESET or changed(self._last.command, command))
         self._play(dt)
         if self._is_stuck(command):
             self._showing.wait(dt, on_the_way=command.led)
@@ -323,28 +325,28 @@ class Controller:
         """Figure 4 (b): which flow this turn takes."""
         if self._errands.busy or (self._resting and command.idle) or self._showing.goes_back:
             return Phase.PLAY
-        if steering.overturned(self._command, command):
+        if steering.overturned(self._last.command, command):
             return Phase.RESET
         if self._next is Phase.RESET:
             return Phase.PLAY if self._waits(command) else Phase.RESET
-        if self._next is Phase.PLAN or self._queue.consumed > 1.0 or changed(self._command, command):
+        if self._next is Phase.PLAN or self._queue.consumed > 1.0 or changed(self._last.command, command):
             return Phase.PLAN
         return Phase.PLAY
 
     def _waits(self, command: Command) -> bool:
         """Whether a plan for the same wish, less than an interval ago, found no way on, or none that could be shown."""
-        if not (self._blocked or self._vain) or self._plan_report is None or changed(self._command, command):
+        if not (self._blocked or self._vain) or changed(self._last.command, command):
             return False
-        return self._queue.time - self._plan_report.time < self.settings.interval
+        return self._last.is_new(self._queue.time, self.settings.interval)
 
     # --- flow A ------------------------------------------------------------------------------------------------------
 
     def _plan(self, command: Command, *, at_once: bool) -> None:
         """Flow A: ask for a root path and its upper-body motion; take them, if they are there already."""
-        hurry = not self._errands.immediate and changed(self._command, command)
+        hurry = not self._errands.immediate and changed(self._last.command, command)
         time, start = self._planning_start(at_once, hurry)
         root, settings = RootState.of(start.root), self.settings
-        if self._command.idle or steering.overturned(self._command, command):
+        if self._last.command.idle or steering.overturned(self._last.command, command):
             way = steering.direction(command, root.heading)
             root = in_step(root, self._shown.root, way, self._check.model.gait.scale)
         others = self._others_beside(start, time, command)
@@ -391,15 +393,13 @@ class Controller:
             self._go_on_with(heard.answer, heard.question, heard.start)
 
     def _go_on_with(self, answer: Answer, question: Question, start: float) -> None:
-        number = 1 if self._plan_report is None else self._plan_report.number + 1
         self._settle_in(self._grounds.around(climbs=answer.climbs))
         root = answer.root._replace(path=replace(answer.root.path, start_time=start))
         found, command = answer.uppers is not None, question.query.command
-        self._plan_report = PlanReport(number, self._queue.time, command, root, answer.local)
-        unwanted = self._halting or steering.overturned(self._command, command)
+        unwanted = self._halting or steering.overturned(self._last.command, command)
         self._halting = unwanted and not found and not self._check.restless  # who stands among what moves is run over
-        self._command, self._next, self._resting = command, Phase.PLAY, False
-        self._travel, self._undecided = answer.travel, answer.undecided
+        self._last = self._last.followed_by(answer, root, command, self._queue.time)
+        self._next, self._resting = Phase.PLAY, False
         self._blocked = not found and self._queue.empty
         self._queue.start_count()
         if answer.uppers is not None:
@@ -468,15 +468,15 @@ class Controller:
             touching=self._showing.clearance < 0.0,
             fill=min(len(key_frames.times), self.settings.queue_size),
             key_frames=key_frames,
-            plan=self._plan_report,
+            plan=self._last.report,
             command=command,
         )
 
     def _is_stuck(self, command: Command) -> bool:
         """Whether the user pushes, and planning has found no way on."""
-        return not command.idle and (self._blocked or self._walled_in())
+        return not command.idle and self._no_way_on
 
-    def _walled_in(self) -> bool:
-        """Whether the root stands because there is no way on for it, climbing included."""
-        stopped = self._plan_report is not None and self._plan_report.root.kind is RootPlanKind.STOPPED
-        return stopped and self.stands and not self._undecided
+    @property
+    def _no_way_on(self) -> bool:
+        """Whether planning has found no way on, or stands where the root has none."""
+        return self._blocked or (self._last.stops and self.stands)
