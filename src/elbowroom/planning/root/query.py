@@ -233,39 +233,46 @@ class RootQuery:
         along a `way` whose first leg is the line, and the more closely where one who cuts its corners meets something.
         """
         route = self._route_along(line, sight, None if way is None else way.seen, tight)
-        stops, corners = route.ends, route.corners
-        if way is not None and not (route.ends or route.detour):
-            stops, corners = way.ends, way.walked
-
+        on_way = way is not None and not (route.ends or route.detour)
+        corners, stops = (way.walked, way.ends) if way is not None and on_way else (route.corners, route.ends)
         facing = line.facing - line.heading if line.turns else line.facing
+        asked = Travel(speed, facing, line.turns, stops, slow, 1.0)
+        walked = self._cornering if way is not None and len(corners) >= _WITH_CORNERS else self._followed
 
-        def candidate(share: float, slow: Floats = slow) -> Floats:
-            travel = Travel(share * speed, facing, line.turns, stops, slow, 1.0)
-            states = walked(travel)
-            if way is None or len(corners) < _WITH_CORNERS or (kept := self._legs.kept(states)) == self.horizon:
-                return states
-            closer = walked(travel._replace(near=_CLOSER))
-            return closer if self._legs.kept(closer) > kept else states
+        def at(share: float, slow: Floats = slow) -> Floats:
+            return walked(corners, asked._replace(speed=share * speed, slow=slow))
 
         def creeping(share: float) -> Floats:
-            return walked(Travel(share * speed, self.start.heading, False, stops, slow, 1.0))
+            return self._followed(corners, asked._replace(speed=share * speed, facing=self.start.heading, turns=False))
 
-        def walked(travel: Travel) -> Floats:
-            states = self._blank()
-            follow(states, corners, travel, self.interval, self.bounds)
-            return states
-
-        states, number, free = self._best(candidate(share) for share in self.settings.slower)
+        states, number, free = self._best(map(at, self.settings.slower))
         crept = self._crept(states, creeping)
         kind = self._kind(crept, whole=number == 0, detour=route.detour)
-        share = self._share_of(number, kind) if crept is states else 0.0
-        states = crept
-        brisk = candidate(1.0, NONE_SLOW) if number == 0 and len(slow) else None
-        beside = route.beside and number == 0
-        answer = Answer(
-            states, kind, _place(route.corners[-1]), route.ends, brisk=brisk, beside=beside, free=free, share=share
+        return Answer(
+            crept,
+            kind,
+            _place(route.corners[-1]),
+            route.ends,
+            brisk=at(1.0, NONE_SLOW) if number == 0 and len(slow) else None,
+            beside=route.beside and number == 0,
+            likewise=at(1.0) if on_way else None,
+            free=free,
+            share=self._share_of(number, kind) if crept is states else 0.0,
         )
-        return answer._replace(likewise=candidate(1.0)) if corners is not route.corners else answer
+
+    def _followed(self, corners: Floats, travel: Travel) -> Floats:
+        """States (n+1, 7) of who follows a route with corners (m, 2)."""
+        states = self._blank()
+        follow(states, corners, travel, self.interval, self.bounds)
+        return states
+
+    def _cornering(self, corners: Floats, travel: Travel) -> Floats:
+        """The same, cutting the corners by less where that is longer free."""
+        states = self._followed(corners, travel)
+        if (kept := self._legs.kept(states)) == self.horizon:
+            return states
+        closer = self._followed(corners, travel._replace(near=_CLOSER))
+        return closer if self._legs.kept(closer) > kept else states
 
     def _route_along(self, line: TravelLine, sight: float, way: Floats | None, tight: Floats) -> Route:
         """The route along a line of travel, or along a way, round `tight` places; the same at every pace."""
