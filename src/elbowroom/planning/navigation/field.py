@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from elbowroom.by_reference import by_reference
 from elbowroom.jit import brief_exact_kernel, exact_kernel, helper, inner_exact_kernel, plain
+from elbowroom.planning.grid_moves import MOVES, STRAIGHT
 from elbowroom.planning.heap import pop, push
 from elbowroom.planning.navigation.surfaces import Surfaces, beside, onto
 from elbowroom.world.ground.ground import EVEN_STAIR
@@ -22,13 +23,6 @@ Points = NDArray[np.int32]
 _EMPTY = plain(0)  # size of a heap
 _ON_STAIR = 0.3  # metres that are looked ahead on what is steeper than an even stair
 _BETTER = 1e-9  # metres by which a cost must be less to count
-_STRAIGHT = 8  # of the moves that lead to a neighbour; the others pass between two
-_MOVES = np.array(
-    [
-        *([1, 0], [-1, 0], [0, 1], [0, -1], [1, 1], [1, -1], [-1, 1], [-1, -1]),
-        *([2, 1], [2, -1], [-2, 1], [-2, -1], [1, 2], [1, -2], [-1, 2], [-1, -2]),
-    ]
-)
 
 
 class Prices(NamedTuple):
@@ -93,14 +87,14 @@ def field_to(costly: Costly, goal: int, start: int, beyond: float) -> Field:
         if node == start:
             most = reached + beyond
         own = price_at(costly, node)
-        for m in range(_MOVES.shape[0]):
-            after = beside(surfaces, node, _MOVES[m, 0], _MOVES[m, 1])
+        for m in range(MOVES.shape[0]):
+            after = beside(surfaces, node, MOVES[m, 0], MOVES[m, 1])
             if after < 0 or done[after]:
                 continue
             mean = 0.5 * (own + price_at(costly, after))
-            if m >= _STRAIGHT:
+            if m >= STRAIGHT:
                 mean = max(mean, _between(costly, node, m))
-            total = reached + mean * surfaces.cell * np.hypot(_MOVES[m, 0], _MOVES[m, 1])
+            total = reached + mean * surfaces.cell * np.hypot(MOVES[m, 0], MOVES[m, 1])
             if total < cost[after] - _BETTER and size < keys.shape[0]:
                 cost[after], onward[after] = total, node
                 size = push(keys, nodes, size, total, after)
@@ -113,7 +107,7 @@ def field_to(costly: Costly, goal: int, start: int, beyond: float) -> Field:
 @helper
 def _between(costly: Costly, node: int, m: int) -> float:
     """The dearer of the two places that a move passes between."""
-    a, b = _MOVES[m, 0], _MOVES[m, 1]
+    a, b = MOVES[m, 0], MOVES[m, 1]
     half_a, half_b = int(a / 2), int(b / 2)
     first = beside(costly.surfaces, node, half_a, half_b)
     other = beside(costly.surfaces, node, a - half_a, b - half_b)

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.jit import exact_kernel, helper, inner_exact_kernel, plain
+from elbowroom.planning.grid_moves import MOVES, STRAIGHT
 from elbowroom.planning.heap import pop, push
 from elbowroom.world.walkable import WalkableMap, interpolate_grid
 
@@ -48,12 +49,6 @@ class Search(NamedTuple):
 
 _EMPTY = plain(0)  # size of a heap
 _ESCAPE = 0.4  # metres around the start where less clearance than the margin is accepted: one must be able to leave
-_MOVES = np.array(
-    [
-        *([1, 0], [-1, 0], [0, 1], [0, -1], [1, 1], [1, -1], [-1, 1], [-1, -1]),
-        *([2, 1], [2, -1], [-2, 1], [-2, -1], [1, 2], [1, -2], [-1, 2], [-1, -2]),
-    ]
-)
 
 
 def find_route(
@@ -141,18 +136,18 @@ def _settle(grid: Floats32, search: Search, first: int) -> tuple[Floats, Indices
             continue
         done[node] = True
         i, j = node // columns, node % columns
-        for m in range(_MOVES.shape[0]):
-            a, b = i + _MOVES[m, 0], j + _MOVES[m, 1]
+        for m in range(MOVES.shape[0]):
+            a, b = i + MOVES[m, 0], j + MOVES[m, 1]
             if not (0 <= a < rows and 0 <= b < columns):
                 continue
             clear = float(grid[a, b])
             if done[a * columns + b] or clear < _needed(search, here, a, b):
                 continue
-            if m >= 8:
-                between = interpolate_grid(grid, i + 0.5 * _MOVES[m, 0], j + 0.5 * _MOVES[m, 1])
+            if m >= STRAIGHT:
+                between = interpolate_grid(grid, i + 0.5 * MOVES[m, 0], j + 0.5 * MOVES[m, 1])
                 if between < _needed(search, here, a, b):
                     continue
-            length = np.sqrt(_MOVES[m, 0] * _MOVES[m, 0] + _MOVES[m, 1] * _MOVES[m, 1]) * search.cell
+            length = np.sqrt(MOVES[m, 0] * MOVES[m, 0] + MOVES[m, 1] * MOVES[m, 1]) * search.cell
             aside = search.aside * abs(b - search.line) * search.cell
             narrow = search.tight * min(max(1.0 - (clear - search.margin) / search.roomy, 0.0), 1.0)
             total = cost[node] + length * (1.0 + aside + narrow)
