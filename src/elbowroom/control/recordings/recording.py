@@ -31,7 +31,7 @@ from numpy.typing import NDArray
 
 from elbowroom import __version__
 from elbowroom.body.dof import DOF, LOWERING, DofGroup, followed
-from elbowroom.body.root import CARRIAGE, HEIGHT, ROOT_STATE, TOLD, RootState, as_told, told
+from elbowroom.body.root import CARRIAGE, FOOT, HEIGHT, ROOT_STATE, TOLD, RootState, as_told, told
 from elbowroom.clips.motion_set import STOCK, MotionSet
 from elbowroom.control.controller import Controller
 from elbowroom.control.frame import Frame, Phase
@@ -88,6 +88,7 @@ _PLACES = {
 RUN, STUCK, TOUCHING, ASSIST, RESTART = 1, 2, 4, 8, 16  # RESTART: `Controller.reset` was called before this step
 LED, LEVEL = 32, 64  # who goes on is led to a place; who stays on the level may not climb
 _PHASES = tuple(Phase)
+_ONE_PLACE = 1e-3  # metres: nobody's feet are as near to each other in every step
 _SAID = 200  # characters of what a header says that are repeated in a message
 
 Steps = NDArray[np.void]
@@ -354,7 +355,15 @@ class Recording:
 def roots_of(steps: Steps) -> NDArray[np.float64]:
     """Root states of `STEP` records with feet and carriage (N, SHOWN), or (N, ROOT_STATE) where they have no feet."""
     roots = as_told(np.ascontiguousarray(steps["root"], np.float64).reshape(-1, TOLD))
-    return roots if roots[:, ROOT_STATE:].any() else np.ascontiguousarray(roots[:, :ROOT_STATE])
+    return roots if _tell_of_feet(roots) else np.ascontiguousarray(roots[:, :ROOT_STATE])
+
+
+def _tell_of_feet(roots: NDArray[np.float64]) -> bool:
+    """Whether root states (N, SHOWN) tell of feet: those that are not told both lie at the root's own place."""
+    left, right = (roots[:, first : first + 2] for first in (ROOT_STATE, ROOT_STATE + FOOT))
+    with np.errstate(all="ignore"):  # a file may say anything
+        together = np.hypot(*(left - right).T) < _ONE_PLACE
+    return not bool(together.all())
 
 
 def _stored(width: int, root: int) -> np.dtype[np.void]:
