@@ -1,6 +1,7 @@
 """The ground of a scene: made once, from what stands in it, by its shape and not by its name."""
 
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,7 +25,17 @@ Bools = NDArray[np.bool_]
 RISE = 0.005  # metres: what rises no higher from the plane is the plane
 _SAME, _WHOLE = 2e-4, 0.9999  # metres, share of a cell: what is as high, and covered
 _FLAT = 1e-9  # m²: a triangle that covers less of the ground is upright
+_AT_ONCE = 4096  # triangles that are turned together, at least, where there are as many
 _THRESHOLD = 0.2  # metres that a floor is taken to reach beyond its edge: what is there is no hole
+
+
+class _Standing(NamedTuple):
+    """What stands, as its surface."""
+
+    triangles: Floats  # (T, 3, 3) about its own origin
+    turn: Floats  # (4,)
+    center: Floats  # (3,)
+    open: bool  # it may be seen from both sides
 
 
 def ground_of(obstacles: Obstacles, floor: FloorArea | None = None, step: float = STEP) -> Ground:
@@ -57,14 +68,30 @@ def over_floors(obstacles: Obstacles) -> Obstacles:
 
 def level_triangles(obstacles: Obstacles) -> Floats:
     """The triangles (T, 3, 3) of what stands that are no steeper than one walks, and face up where it is closed."""
-    found = [np.empty((0, 3, 3))]
+    found, together, count = [np.empty((0, 3, 3))], list[_Standing](), 0
     for _, shape, center, turn in obstacles:
-        corners = quaternion.rotate(turn, triangles_of(shape).reshape(-1, 3)).reshape(-1, 3, 3) + center
-        normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-        up = np.abs(normals[:, 1]) if isinstance(shape, Mesh) else normals[:, 1]
-        steep = np.cos(STEEPEST) * np.linalg.norm(normals, axis=1)
-        found.append(corners[(up >= steep * (1.0 - 1e-9)) & (up > _FLAT)])
-    return np.concatenate(found)
+        together.append(_Standing(triangles_of(shape), turn, center, open=isinstance(shape, Mesh)))
+        count += len(together[-1].triangles)
+        if count >= _AT_ONCE:
+            found.append(_level_of(together))
+            together, count = [], 0
+    return np.concatenate([*found, _level_of(together)] if together else found)
+
+
+def _level_of(together: list[_Standing]) -> Floats:
+    """The same of some of what stands, in its order."""
+    each = [len(one.triangles) for one in together]
+    turns, centers, opens = (
+        np.repeat(np.array(told), each, axis=0)
+        for told in ([one.turn for one in together], [one.center for one in together], [one.open for one in together])
+    )
+    about = np.concatenate([one.triangles for one in together])
+    corners = quaternion.rotate(turns[:, None], about) + centers[:, None]
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    up = np.where(opens, np.abs(normals[:, 1]), normals[:, 1])
+    steep = np.cos(STEEPEST) * np.linalg.norm(normals, axis=1)
+    level: Floats = corners[(up >= steep * (1.0 - 1e-9)) & (up > _FLAT)]
+    return level
 
 
 def _covered(triangles: Floats, floor: FloorArea | None) -> Bools:
