@@ -1,4 +1,4 @@
-"""What skinned surfaces do at hips, knees, toes and elbows: a body in several poses, and what its joints see of it."""
+"""What skinned surfaces do where joints bend: a body in several poses, and what its joints see of it."""
 
 from dataclasses import dataclass
 from typing import NamedTuple
