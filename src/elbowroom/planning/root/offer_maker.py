@@ -39,9 +39,7 @@ class _Grid(NamedTuple):
 
     dear: float  # seconds that all else must have come to cost
     finder: EvasionFinder
-    through: float | None = (
-        None  # it lies along a gap, walked sideways at this share of the usual speed; None: the line
-    )
+    through: float | None = None  # along a gap, walked sideways at this share of the usual speed; else along the line
 
 
 class _Matter(NamedTuple):
