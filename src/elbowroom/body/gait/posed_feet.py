@@ -1,8 +1,8 @@
 """Where feet that stand and step put ankles and hips: those of `footholds`, as `gait` has those of the walking cycle.
 
-Hips are where the cycle has them, and lower where one goes down (`going_down`). Where a leg would be too short for
-that, its foot comes nearer, as people's do: the heel of one that is behind rises, and one that swings is lifted. For
-what is left the hips come down. None of them turns suddenly: a leg that is let go in one frame has a knee that snaps.
+Hips are where the cycle has them. Where a leg would be too short for that, its foot comes nearer, as people's do: the
+heel of one that is behind rises, and one that swings is lifted. For what is left the hips come down. None of them turns
+suddenly: a leg that is let go in one frame has a knee that snaps.
 
 On ground that is not the root's plane feet are raised to what each of them stands on, or swings over, as those of the
 cycle are (`rises`): pitched and lifted as in the same stride on the plane, which tells how deep their capsules lie. The
@@ -15,7 +15,6 @@ from numpy.typing import NDArray
 from elbowroom.body.gait.carriage import carried_hip
 from elbowroom.body.gait.cycle import smooth, too_high, walk_into
 from elbowroom.body.gait.foot_state import LIFT, PITCH, SWING, YAW, X, Z
-from elbowroom.body.gait.going_down import lower_going_down
 from elbowroom.body.gait.heels import Hip, behind, distance, raise_heel, too_far
 from elbowroom.body.gait.lowered_hips import hips_sink
 from elbowroom.body.gait.rises import STRETCH, is_uneven, raise_foot
@@ -91,7 +90,6 @@ def posed_feet(legs: Floats, scale: float, half_leg: float, rows: Floats, loweri
     walk_into(legs, scale, rows, np.empty((0, 2, 6)), drops, np.empty(6))
     for n in range(len(rows)):
         row = rows[n]
-        drops[n] += lower_going_down(scale, row)
         down, back, lean = hips_sink(half_leg, drops[n], lowerings[n])
         for side in range(2):
             x, y, z = carried_hip(legs, row, lean, side)
