@@ -74,20 +74,23 @@ def table1(
             about = _about(settings, workers.at_once)
         table, page = _run(settings, about, out, workers, quiet=quiet)
     document = table_document(table, about)
-    files = {
-        out / REPORT: page,
-        out / CSV: table_csv(table),
-        out / JSON: json_text(document | trials_document(table)) + "\n",
-    }
-    for path, text in files.items():
-        write_text(path, text)
+    texts = page, table_csv(table), json_text(document | trials_document(table)) + "\n"
+    files = _written(out, texts)
     if json:
-        print_json(document | {"files": [str(path) for path in files]})
+        print_json(document | {"files": files})
     else:
         from elbowroom.cli.telling.table1_text import print_table1
 
-        print_table1(table, about, [str(path) for path in files])
+        print_table1(table, about, files)
     raise typer.Exit(FELL_SHORT if document["touching_trials"] else 0)
+
+
+def _written(out: Path, texts: tuple[str, str, str]) -> list[str]:
+    """Write report, figures and trials into a folder; the files."""
+    files = [out / name for name in (REPORT, CSV, JSON)]
+    for path, text in zip(files, texts, strict=True):
+        write_text(path, text)
+    return [str(path) for path in files]
 
 
 def _run(

@@ -98,11 +98,12 @@ def farther_onto(
 ) -> tuple[float, Lie]:
     """How much farther ahead a foot has to land so that it stands on a tread and not across its edge, metres.
 
-    And on the next tread, not on the one after it: no deeper than at that height, where it can be.
-
     As little as possible. Where that is not had within a few centimetres its toes hang in the air, or it stands on its
     ball, over which it rolls; where it does not do so either, it goes a little farther, and as little of it as can be
     is in the air. And how it lies there.
+
+    It goes to the next tread, not to the one after it: to none lower than `deepest`, metres in the world, where another
+    will do.
     """
     best, farther, lies = _NOWHERE, 0.0, (NO_GROUND, 0.0)
     for k in range(2 * _FARTHEST + 1):
