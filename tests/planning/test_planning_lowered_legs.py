@@ -6,8 +6,10 @@ from elbowroom.body.dof import DOF, LOWERING, DofGroup, limits
 from elbowroom.body.fitting.proportions import proportional_humanoid
 from elbowroom.body.pose.kinematics import body_model, posture_capsules
 from elbowroom.planning.interpolation import hermite, monotone_tangents
+from elbowroom.planning.model.footing import Footing
 from elbowroom.planning.model.lowered_legs import LoweredLegs
 from elbowroom.planning.root.path import RootPath, sample_states
+from elbowroom.world.ground.ground import PLAIN
 from elbowroom.world.obstacles.clearance import clearance_of
 from elbowroom.world.obstacles.layout import Nearby
 from elbowroom.world.obstacles.obstacles import Obstacles
@@ -19,7 +21,8 @@ Floats = NDArray[np.float64]
 
 HUMANOID = proportional_humanoid(1.72)
 MODEL = body_model(HUMANOID)
-LEGS = HUMANOID.capsules.of(DofGroup.ROOT)
+FEET = Footing(MODEL, PLAIN).feet
+LEGS = np.delete(HUMANOID.capsules.of(DofGroup.ROOT), FEET)
 DEEPEST = float(limits(DofGroup.WAIST)[2, 1])
 
 

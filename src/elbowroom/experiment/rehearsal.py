@@ -17,7 +17,7 @@ from elbowroom.body.gait.living import body_of, living
 from elbowroom.body.gait.stride import feet_standing, stride_length
 from elbowroom.body.gait.tilted_foot import rolled
 from elbowroom.body.humanoid import Humanoid
-from elbowroom.body.pose.kinematics import body_model, leg_capsules, lower_body
+from elbowroom.body.pose.kinematics import body_model, lower_body
 from elbowroom.body.root import CARRIAGE, ROOT_STATE, RootState
 from elbowroom.body.soles import PITCHES
 from elbowroom.control.feet.feet_ahead import glides_ahead, steps_ahead
@@ -185,7 +185,6 @@ def rehearse_ground(humanoid: Humanoid) -> None:
     model, states = body_model(humanoid), np.zeros((1, ROOT_STATE))
     footing = Footing(model, scene.ground)
     footing.floors(footing.stood(states)[0])
-    footing.lifted(leg_capsules(model, states), model.roots, states)
     stands = np.concatenate([beside(model.gait, states[0]), np.zeros(CARRIAGE)])
     elsewhere = stands + 0.3 * (np.arange(len(stands)) == ROOT_STATE)
     BodyCheck(humanoid, scene).free_between(Frames((stands, elsewhere), (upper, upper), (0.0, 1.0)))

@@ -13,14 +13,14 @@ from functools import cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from elbowroom.body.dof import DOF
 from elbowroom.body.gait.cycle import stood_places
 from elbowroom.body.pose.kinematics import BodyModel, CapsuleSet, leg_capsules, posture_capsules
 from elbowroom.body.root import HEIGHT, RISES, ROOT_STATE
 from elbowroom.by_reference import by_reference
-from elbowroom.jit import brief_exact_kernel, exact_kernel, helper, inner_exact_kernel
+from elbowroom.jit import brief_exact_kernel, helper, inner_exact_kernel
 from elbowroom.world.ground.ground import PLAIN, Ground, height_along, level_about, under_body
 from elbowroom.world.ground.sole import Sole, sole_on
 from elbowroom.world.ground.swept import set_highest_under
@@ -132,25 +132,6 @@ class Footing:
         feet, sets = self._model.figure.legs[:, 2:], (self._model.roots, self._model.body)
         legs, body = (np.array([np.isin(each.joints, own) for own in feet]) for each in sets)
         return legs, body
-
-    def lifted(
-        self,
-        segments: Floats32,
-        capsules: CapsuleSet,
-        states: Floats,
-        lowerings: ArrayLike = 0.0,
-        spare: float = 0.0,
-    ) -> Floats32:
-        """Capsules (C, 6, N) of root states (N, 7) and lowerings, those of the feet as high as they are held.
-
-        `spare` metres higher, for who asks for so much clearance. The same on plain ground.
-        """
-        if self.ground.plain:
-            return segments
-        higher, own, roots = segments.copy(), np.flatnonzero(self._feet(capsules)), self._model.roots
-        on_plane = leg_capsules(self._model, levelled(states), lowerings)
-        lift_feet(higher, own, on_plane, self.feet, roots.radii, spare)
-        return higher
 
     @cached_property
     def feet(self) -> Longs:
@@ -305,7 +286,7 @@ def floors_under(states: Floats) -> Floats:
     return floors
 
 
-@exact_kernel
+@inner_exact_kernel
 def levelled(states: Floats) -> Floats:
     """Root states (N, ROOT_STATE) in the same strides on the plane."""
     level = states.copy()
@@ -320,7 +301,7 @@ def lift_of(radius: Any, lowest: Any) -> Any:
     return max(radius - lowest, _NOTHING) + _IN_GROUND
 
 
-@exact_kernel
+@inner_exact_kernel
 def lift_feet(segments: Floats32, feet: Longs, on_plane: Floats32, soles: Longs, radii: Floats32, spare: float) -> None:
     """Raise the capsules `feet` (F,) among `segments` (C, 6, N) by as much as feet are below the plane, and 3 mm.
 

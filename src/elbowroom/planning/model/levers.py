@@ -15,8 +15,7 @@ from elbowroom.body.gait.lowered_hips import STEEPEST, hips_sinks
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.pose.kinematics import BodyModel, body_model, leg_capsules, pelvis_frames
 from elbowroom.body.pose.posing import Column
-from elbowroom.body.root import HEIGHT, RISES, ROOT_STATE
-from elbowroom.jit import inner_exact_kernel
+from elbowroom.body.root import ROOT_STATE
 from elbowroom.planning.model.even_points import evenly_spread
 from elbowroom.planning.model.limb import Limb, limb_of
 from elbowroom.planning.shared import Shared
@@ -27,11 +26,10 @@ Indices = NDArray[np.int64]
 ROTATION = 1.15  # a rotation vector of up to 1.7 rad changes at most so much faster than the rotation turns
 MOVES = 3  # columns of a limb's moves, and of a stride's
 _LOWERING = LOWERING - DofGroup.WAIST.at.start - 1  # its place among the waist's moves
-_STRIDES, _STEP, _SPARE = 2048, 1e-3, 1.25  # strides that are measured, by changes so small; what others may do more
+SPARE = 1.25  # of what was measured, that what was not may do more
+_STRIDES, _STEP = 2048, 1e-3  # strides that are measured, by changes so small
 _VELOCITIES = np.array([[-1.5, 3.0], [-1.0, 1.0], [-2.5, 2.5]])  # m/s ahead and to the left, rad/s
 _LOWEST = 0.7  # half leg lengths
-_KNEES, _ANKLES = 4.0, 1.5  # metres that a leg moves where its ground rises by one, or slopes by a radian more
-_STEPS = 2.5  # and where one goes up faster by 1 m/s: steps are shorter then
 
 
 def lifts_of(model: BodyModel, spans: Floats) -> Floats:
@@ -118,17 +116,6 @@ class BodyLevers:
         return levers
 
 
-@inner_exact_kernel
-def raised_between(one: Floats, other: Floats) -> float:
-    """No point of a leg moves farther, metres, while what the feet of a root state stand on, and how fast that rises,
-    changes to another's.
-    """
-    left, right = abs(other[RISES] - one[RISES]), abs(other[RISES + 2] - one[RISES + 2])
-    slopes = abs(other[RISES + 1] - one[RISES + 1]) + abs(other[RISES + 3] - one[RISES + 3])
-    climbs = abs(other[HEIGHT + 1] - one[HEIGHT + 1])
-    return float(_KNEES * (left + right) + _ANKLES * slopes + _STEPS * climbs)
-
-
 _LEVERS: Shared[BodyLevers] = Shared()
 
 
@@ -184,7 +171,7 @@ def _stride_levers(model: BodyModel) -> tuple[Floats, Floats]:
     for row in np.eye(ROOT_STATE + 1)[[3, 4, 5, 6, ROOT_STATE]]:
         after = _seen_from_pelvis(model, states + _STEP * row[:-1], lowerings + _STEP * row[-1])
         ways.append(np.linalg.norm(after - begin, axis=2).max(axis=(1, 2)))
-    ahead, aside, turn, phase, lowering = _SPARE / _STEP * np.array(ways)
+    ahead, aside, turn, phase, lowering = SPARE / _STEP * np.array(ways)
     return np.stack([np.hypot(ahead, aside), turn, phase], axis=1), lowering
 
 

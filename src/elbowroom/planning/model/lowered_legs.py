@@ -1,7 +1,8 @@
 """The legs of a body that crouches: knees that come forward and aside, hips that go down and back, among the obstacles.
 
 The root's path is planned for upright legs. How deep the body crouches on it is chosen with the waist, so legs and
-pelvis have to be looked at again where it does. That depends on the lowering and on the root's state alone.
+pelvis have to be looked at again where it does; not feet, which go as they go upright. That depends on the lowering and
+on the root's state alone.
 """
 
 import math
@@ -41,6 +42,7 @@ class LoweredLegs:
 
     def __init__(self, model: BodyModel, obstacles: Obstacles, ground: Ground = PLAIN) -> None:
         self._model, self._obstacles, self.footing = model, obstacles, Footing(model, ground)
+        self._bending = np.flatnonzero(~np.isin(np.arange(len(model.roots.radii)), self.footing.feet))
         self._reach, height = _extent(model)
         self._low = obstacles.corners[:, :, 1].min(axis=1, initial=np.inf) < (height if ground.plain else np.inf)
         self._sweeps: Spans | None = None
@@ -107,10 +109,9 @@ class LoweredLegs:
             return np.full(len(roots), np.inf, np.float32)
         states = roots.copy()
         states[:, :2] -= roots[0, :2]
-        segments = self.footing.lifted(
-            leg_capsules(self._model, states, lowerings), self._model.roots, states, lowerings
-        )
-        return clearance(segments, self._model.roots.radii, about(near, roots[0, 0], roots[0, 1]), farthest)
+        segments, radii = leg_capsules(self._model, states, lowerings), self._model.roots.radii
+        near, bending = about(near, roots[0, 0], roots[0, 1]), self._bending
+        return clearance(segments[bending], radii[bending], near, farthest)
 
     def blocked_nodes(self, path: RootPath, lowerings: Floats, margin: float) -> Bools:
         """Which of the lowerings (n+1, V) bring legs within `margin` of anything about their key time: (n+1, V)."""

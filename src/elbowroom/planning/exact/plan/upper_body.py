@@ -28,6 +28,7 @@ from elbowroom.planning.motion import GoOn, keep_going
 from elbowroom.planning.narrow.figure import figure_of
 from elbowroom.planning.narrow.goals import goals_where_narrow
 from elbowroom.planning.narrow.places import NarrowPlaces
+from elbowroom.planning.on_stairs import goals_on_stairs
 from elbowroom.planning.result import LocalPlan, PlanStatus
 from elbowroom.planning.root.path import RootPath, ground_covered
 from elbowroom.world.obstacles.rows import any_in
@@ -54,6 +55,7 @@ class UpperBodyPlanner:
         )
         self._refinement = RefinementSettings()
         body = body_model(humanoid)
+        self._gait = body.gait
         self._legs = LoweredLegs(body, scene.obstacles, scene.ground)
         self._underfoot = Footing(body, scene.ground).underfoot
         self._narrow = NarrowPlaces(figure_of(humanoid, body), scene.free_map)
@@ -128,7 +130,7 @@ class UpperBodyPlanner:
         caches = self.memory.begin(path.horizon)
         roots = root_sweeps(caches.roots, self.model.chain, path.states, path.interval, near.stamps)
         margins = self._required(path, begins.ahead)
-        walk = self.model.goals(path)
+        walk = goals_on_stairs(self.model.goals(path), path.states, self._gait.scale, self._gait.half_leg)
         goals = goals_where_narrow(self._narrow, path, walk) if any_in(near.spans) else walk
         problem = PathProblem.of(path, walk, goals, previous, begins, roots, near, margins)
         return UpperBodySearch(caches, self._weights, self.model, legs, problem, go_on)

@@ -2,8 +2,8 @@
 
 A pair is two capsules, seen from the pelvis or from the chest. How far they can move against each other is what each
 component of the body moves in a part of a key interval, times the pair's levers. Feet are looked at on what they stand
-on at that moment. An interval that was looked at for an earlier plan is known by its content, on uneven ground by its
-place too. It is one compiled call.
+on at that moment, and what that alone makes of the legs from look to look is measured and added. An interval that was
+looked at for an earlier plan is known by its content, on uneven ground by its place too. It is one compiled call.
 """
 
 from typing import NamedTuple
@@ -24,7 +24,7 @@ from elbowroom.planning.exact.sweep.motion_bounds import moves_between, stride_m
 from elbowroom.planning.halving import ENOUGH, begun, due, settle
 from elbowroom.planning.model.axis_distances import clear_pairs
 from elbowroom.planning.model.footing import ON_PLANE, Underfoot
-from elbowroom.planning.model.levers import MOVES, BodyLevers, raised_between
+from elbowroom.planning.model.levers import MOVES, SPARE, BodyLevers
 from elbowroom.planning.model.self_pairs import SelfPairs
 from elbowroom.planning.root.path import RootPath, interpolate_root
 
@@ -192,11 +192,11 @@ def _prove(parts: OwnParts, feet: _Feet, shown: Shown, chosen: Indices, least: F
         for n in range(looks):
             intervals[i * looks + n], moments[i * looks + n] = chosen[i], n / _PARTS
         _set_moves(shown, chosen[i], moves[i * _PARTS : (i + 1) * _PARTS])
-    roots = _roots_at(parts, feet, shown, intervals, moments)
+    roots, postures = _roots_at(parts, feet, shown, intervals, moments), _postures(shown, intervals, moments)
     lengths = _lengths(parts.levers, moves)
     if not feet.under.ground.plain:
-        _add_raising(parts.levers, roots, lengths)
-    proof = begun(_gaps(parts, shown, roots, intervals, moments), lengths, _PARTS, _AFAR, _HALVINGS)
+        _add_raising(parts, postures, roots, lengths)
+    proof = begun(_gaps(parts, postures, roots), lengths, _PARTS, _AFAR, _HALVINGS)
     wanted, shares = np.empty(_LOOKS, np.int64), np.empty(_LOOKS)
     more = due(proof, wanted, shares)
     while more > 0:
@@ -204,7 +204,7 @@ def _prove(parts: OwnParts, feet: _Feet, shown: Shown, chosen: Indices, least: F
             shares[n] = (wanted[n] % _PARTS + shares[n]) / _PARTS
             wanted[n] = chosen[wanted[n] // _PARTS]
         roots = _roots_at(parts, feet, shown, wanted[:more], shares[:more])
-        settle(proof, _gaps(parts, shown, roots, wanted[:more], shares[:more]), more)
+        settle(proof, _gaps(parts, _postures(shown, wanted[:more], shares[:more]), roots), more)
         more = due(proof, wanted, shares)
     for b in range(proof.least.shape[0]):
         k = chosen[b // _PARTS]
@@ -236,14 +236,35 @@ def _lengths(levers: Floats, moves: Floats) -> Floats:
 
 
 @helper
-def _add_raising(levers: Floats, roots: Floats, lengths: Floats) -> None:
-    """Add to `lengths` (B, P) what feet are raised and tilted by between looks at `roots`, for pairs with a leg."""
+def _add_raising(parts: OwnParts, postures: Floats, roots: Floats, lengths: Floats) -> None:
+    """Add to `lengths` (B, P) what moves legs against the pelvis from look to look because the ground under feet does.
+
+    That is measured: each posture (N, DOF) is held, in its root state (N, ROOT_STATE), over the ground of the next.
+    """
+    over = roots.copy()
+    over[:-1, RISES - 1 :] = roots[1:, RISES - 1 :]
+    before, chests, _ = posed_body(parts.body, postures, roots)
+    after, raised, _ = posed_body(parts.body, postures, over)
+    moved = np.empty(before.shape[0])
     for b in range(lengths.shape[0]):
-        before = b + b // _PARTS
-        raised = raised_between(roots[before], roots[before + 1])
+        n = b + b // _PARTS
+        shift = raised[n] - chests[n]
+        for c in range(moved.shape[0]):
+            moved[c] = SPARE * _moved(before[c, :, n], after[c, :, n], shift)
         for p in range(lengths.shape[1]):
-            if levers[p, levers.shape[1] - 1] > 0.0:
-                lengths[b, p] += raised
+            lengths[b, p] += moved[parts.first[p]] + moved[parts.second[p]]
+
+
+@helper
+def _moved(before: Floats32, after: Floats32, shift: Floats) -> float:
+    """How far an axis (6,) is moved, beyond a shift (3,) of all, at that of its ends which goes farther."""
+    farthest = 0.0
+    for end in range(2):
+        square = 0.0
+        for k in range(3):
+            square += (after[3 * end + k] - before[3 * end + k] - shift[k]) ** 2
+        farthest = max(farthest, square)
+    return float(np.sqrt(farthest))
 
 
 @inner_exact_kernel
@@ -261,9 +282,9 @@ def _roots_at(parts: OwnParts, feet: _Feet, shown: Shown, intervals: Indices, sh
     return roots
 
 
-@exact_kernel
-def _gaps(parts: OwnParts, shown: Shown, roots: Floats, intervals: Indices, shares: Floats) -> Floats32:
-    """The gaps (N, P) of the pairs at shares (N,) of `intervals` (N,), metres beyond what they may come near."""
+@inner_exact_kernel
+def _postures(shown: Shown, intervals: Indices, shares: Floats) -> Floats:
+    """The postures (N, DOF) at shares (N,) of `intervals` (N,), of a root at the origin."""
     keys, rates, interval = shown.keys, shown.rates, shown.interval
     count, first = shares.shape[0], DOF - keys.shape[1]
     postures = np.zeros((count, DOF))
@@ -272,7 +293,14 @@ def _gaps(parts: OwnParts, shown: Shown, roots: Floats, intervals: Indices, shar
         for j in range(keys.shape[1]):
             a, b, m, e = keys[k, j], keys[k + 1, j], interval * rates[k, j], interval * rates[k + 1, j]
             postures[n, first + j] = a + u * (m + u * (3.0 * (b - a) - 2.0 * m - e + u * (2.0 * (a - b) + m + e)))
+    return postures
+
+
+@exact_kernel
+def _gaps(parts: OwnParts, postures: Floats, roots: Floats) -> Floats32:
+    """The gaps (N, P) of the pairs in postures (N, DOF) and root states, metres beyond what they may come near."""
     capsules, _, _ = posed_body(parts.body, postures, roots)
+    count = roots.shape[0]
     gaps = np.empty((count, parts.first.shape[0]), np.float32)
     for p in range(parts.first.shape[0]):
         found = clear_pairs(capsules[parts.first[p]], capsules[parts.second[p]])
