@@ -16,7 +16,7 @@ from websockets.exceptions import ConnectionClosed, WebSocketException  # noqa: 
 from elbowroom.cluster.connection import joined  # noqa: E402
 from elbowroom.cluster.fleet import Fleet, FleetSettings  # noqa: E402
 from elbowroom.cluster.keeper import Keeper  # noqa: E402
-from elbowroom.cluster.replica import Offer  # noqa: E402
+from elbowroom.cluster.replica import ServerOffer  # noqa: E402
 from elbowroom.server.schema.commands import Configure  # noqa: E402
 from elbowroom.server.schema.menus import Settings  # noqa: E402
 from elbowroom.server.schema.picture import SceneMessage  # noqa: E402
@@ -104,7 +104,7 @@ def test_who_loses_a_server_or_a_node_goes_on_in_the_same_place(monkeypatch: pyt
     other = cluster.add_node(**NODE)
     told: list[str] = []
     loop = asyncio.new_event_loop()
-    offer, settings = Offer(Scene.load("empty"), WalkSettings()), FleetSettings(each=1)
+    offer, settings = ServerOffer(Scene.load("empty"), WalkSettings()), FleetSettings(each=1)
     with joined(cluster.address, told.append) as nodes, listen("127.0.0.1", 0) as opened:
         fleet = Fleet(nodes, offer, opened, settings, told.append)
         url = url_of(opened)

@@ -13,7 +13,7 @@ ray = pytest.importorskip("ray", reason="needs Ray: pip install 'elbowroom[clust
 
 from cluster_tasks import Death, Square  # noqa: E402
 from elbowroom.cluster.connection import connected  # noqa: E402
-from elbowroom.cluster.node import Kind, made_ready  # noqa: E402
+from elbowroom.cluster.node import NodeKind, made_ready  # noqa: E402
 from elbowroom.cluster.workers import RayWorkers  # noqa: E402
 from elbowroom.errors import InputError  # noqa: E402
 from elbowroom.experiment.gauntlet.runner import run_gauntlet  # noqa: E402
@@ -122,7 +122,7 @@ class _Nobody(Processes):
 
 
 def test_other_programs_and_processors_are_named() -> None:
-    own = Kind.here()
+    own = NodeKind.here()
     assert own.difference(own) == made_ready(own) == ""
     assert replace(own, version="9.9").difference(own) == f"its elbowroom is 9.9, here {own.version}"
     assert "its code is not that" in replace(own, program="x").difference(own)

@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from elbowroom.experiment.judge.smoothness import smoothness
 
 from elbowroom.body.dof import DOF
 from elbowroom.body.fitting.proportions import proportional_humanoid
@@ -14,7 +15,6 @@ from elbowroom.control.recordings.recording import ASSIST, RESTART, Recorder, Re
 from elbowroom.errors import InputError
 from elbowroom.experiment.judge.motion import ShownMotion
 from elbowroom.experiment.judge.settings import JudgeSettings
-from elbowroom.experiment.judge.smoothness import smoothness
 from elbowroom.experiment.judge.verdict import Verdict, judge_recording
 from elbowroom.planning.command import Command
 from elbowroom.world.scene import Scene

@@ -7,7 +7,7 @@ from scipy.spatial.transform import Rotation, Slerp
 
 from animation_builder import animated_glb
 from elbowroom.errors import InputError
-from elbowroom.formats.animations import Track, read_animations, sample, take_of
+from elbowroom.formats.animations import KeyedTrack, read_animations, sample, take_of
 from elbowroom.formats.gltf import parse_gltf
 from elbowroom.formats.nodes import read_nodes
 
@@ -22,28 +22,28 @@ def rotations(count: int) -> np.ndarray:
 
 def test_linear_rotations_are_slerp_and_rest_at_the_ends() -> None:
     turns = rotations(4)
-    found = sample(Track(0, "rotation", "LINEAR", TIMES, turns), AT)
+    found = sample(KeyedTrack(0, "rotation", "LINEAR", TIMES, turns), AT)
     wanted = Slerp(TIMES, Rotation.from_quat(turns))(np.clip(AT, TIMES[0], TIMES[-1]))
     assert (Rotation.from_quat(found).inv() * wanted).magnitude().max() < 1e-9
 
 
 def test_linear_translations_are_straight() -> None:
     places = np.random.default_rng(1).standard_normal((4, 3))
-    found = sample(Track(0, "translation", "LINEAR", TIMES, places), AT)
+    found = sample(KeyedTrack(0, "translation", "LINEAR", TIMES, places), AT)
     wanted = np.stack([np.interp(AT, TIMES, column) for column in places.T], axis=1)
     np.testing.assert_allclose(found, wanted, atol=1e-12)
 
 
 def test_steps_hold_until_the_next_key() -> None:
     places = np.arange(12.0).reshape(4, 3)
-    found = sample(Track(0, "translation", "STEP", TIMES, places), np.array([0.0, 0.69, 0.7, 1.39, 2.0, 9.0]))
+    found = sample(KeyedTrack(0, "translation", "STEP", TIMES, places), np.array([0.0, 0.69, 0.7, 1.39, 2.0, 9.0]))
     np.testing.assert_array_equal(found[:, 0], [0, 0, 3, 3, 9, 9])
 
 
 def test_cubic_splines_have_tangents_per_second() -> None:
     values = np.random.default_rng(2).standard_normal((4, 3, 3))
     inner = AT[(TIMES[0] <= AT) & (TIMES[-1] >= AT)]
-    found = sample(Track(0, "translation", "CUBICSPLINE", TIMES, values), inner)
+    found = sample(KeyedTrack(0, "translation", "CUBICSPLINE", TIMES, values), inner)
     for k in range(3):
         here = (inner >= TIMES[k]) & (inner <= TIMES[k + 1])
         ends = values[k, 2], values[k + 1, 0]
@@ -53,7 +53,7 @@ def test_cubic_splines_have_tangents_per_second() -> None:
 
 def test_a_single_key_is_a_pose() -> None:
     for mode, values in (("LINEAR", np.ones((1, 3))), ("CUBICSPLINE", np.ones((1, 3, 3)))):
-        found = sample(Track(0, "translation", mode, np.array([1.0]), values), AT)
+        found = sample(KeyedTrack(0, "translation", mode, np.array([1.0]), values), AT)
         np.testing.assert_array_equal(found, np.ones((len(AT), 3)))
 
 

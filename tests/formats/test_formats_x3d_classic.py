@@ -5,7 +5,7 @@ import pytest
 
 from elbowroom.errors import InputError
 from elbowroom.formats.x3d.expand import expand
-from elbowroom.formats.x3d.files import Library, parse_x3d
+from elbowroom.formats.x3d.files import FilesBeside, parse_x3d
 from elbowroom.formats.x3d.model import Node, Notes, X3dScene
 
 VRML = "#VRML V2.0 utf8\n"
@@ -18,7 +18,7 @@ def parsed(text: str, header: str = VRML) -> tuple[X3dScene, Notes]:
 
 def expanded(text: str, header: str = VRML) -> list[Node]:
     scene, notes = parsed(text, header)
-    return expand(scene, Library(None, notes))
+    return expand(scene, FilesBeside(None, notes))
 
 
 def test_values_of_every_shape() -> None:

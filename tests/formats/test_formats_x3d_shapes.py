@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 from elbowroom.errors import InputError
 from elbowroom.formats.hanim.skin import skin_weights
 from elbowroom.formats.x3d.expand import expand
-from elbowroom.formats.x3d.files import Library, parse_x3d
+from elbowroom.formats.x3d.files import FilesBeside, parse_x3d
 from elbowroom.formats.x3d.mesh import Mesh
 from elbowroom.formats.x3d.model import Node, Notes
 from elbowroom.formats.x3d.pictures import mime_of, pixel_texture
@@ -18,7 +18,7 @@ Floats = NDArray[np.float64]
 
 def node_of(text: str) -> Node:
     notes = Notes()
-    return expand(parse_x3d(f"#X3D V3.3 utf8\n{text}".encode(), "a.x3dv", notes), Library(None, notes))[0]
+    return expand(parse_x3d(f"#X3D V3.3 utf8\n{text}".encode(), "a.x3dv", notes), FilesBeside(None, notes))[0]
 
 
 def mesh_of(text: str) -> Mesh:

@@ -8,7 +8,7 @@ import pytest
 
 from elbowroom.errors import InputError
 from elbowroom.formats.x3d.expand import expand
-from elbowroom.formats.x3d.files import MAX_BYTES, Library, parse_x3d
+from elbowroom.formats.x3d.files import MAX_BYTES, FilesBeside, parse_x3d
 from elbowroom.formats.x3d.model import Node, Notes
 from hanim_builder import HanimRecipe, build_hanim
 
@@ -17,7 +17,7 @@ HEAD = '<?xml version="1.0"?><!DOCTYPE X3D PUBLIC "a" "http://nowhere.test/x3d.d
 
 def expanded(scene: str) -> list[Node]:
     notes = Notes()
-    return expand(parse_x3d(f"{HEAD}<Scene>{scene}</Scene></X3D>".encode(), "a.x3d", notes), Library(None, notes))
+    return expand(parse_x3d(f"{HEAD}<Scene>{scene}</Scene></X3D>".encode(), "a.x3d", notes), FilesBeside(None, notes))
 
 
 def test_containers_are_those_of_the_standard_or_of_the_file() -> None:
@@ -65,7 +65,7 @@ def test_all_encodings_say_the_same(skinned: bool) -> None:
     for encoding in ("xml", "classic", "vrml"):
         notes = Notes()
         data = build_hanim(HanimRecipe(encoding, skinned=skinned))
-        graphs.append(expand(parse_x3d(data, "made.wrl", notes), Library(None, notes)))
+        graphs.append(expand(parse_x3d(data, "made.wrl", notes), FilesBeside(None, notes)))
     for other in graphs[1:]:
         for a, b in zip(graphs[0], other, strict=True):
             compare(a, b)
@@ -138,13 +138,13 @@ Inline { url "parts/ball.wrl" }
 Inline { url [ "../secret.wrl" "link.wrl" "file:///etc/passwd" "http://nowhere.test/a.wrl" "/etc/passwd" "" ] }
 """
     notes = Notes()
-    library = Library(tmp_path / "scene", notes)
+    library = FilesBeside(tmp_path / "scene", notes)
     ball, group = expand(parse_x3d(scene.encode(), "a.wrl", notes), library)
     assert (ball.kind, ball.number("radius", 0.0)) == ("Sphere", 3)
     assert [node.kind for inner in group.nodes("children") for node in inner.nodes("children")] == ["Cone"]
     assert [line.split(": ")[1] for line in notes.lines] == ["line 5"]
     alone = Notes()
-    assert expand(parse_x3d(scene.encode(), "a.wrl", alone), Library(None, alone)) == []
+    assert expand(parse_x3d(scene.encode(), "a.wrl", alone), FilesBeside(None, alone)) == []
     assert len(alone.lines) == 3
 
 
@@ -154,4 +154,4 @@ def test_a_file_that_takes_itself_in(tmp_path: Path) -> None:
     )
     notes = Notes()
     with pytest.raises(InputError, match="more than"):
-        expand(parse_x3d((tmp_path / "a.wrl").read_bytes(), "a.wrl", notes), Library(tmp_path, notes))
+        expand(parse_x3d((tmp_path / "a.wrl").read_bytes(), "a.wrl", notes), FilesBeside(tmp_path, notes))

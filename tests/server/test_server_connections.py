@@ -12,14 +12,14 @@ from uvicorn.protocols.utils import ClientDisconnected
 from websockets.exceptions import ConnectionClosed
 
 from elbowroom.server.entrance import connections
-from elbowroom.server.entrance.connections import BoundedWebSocket, Doorman, Patience
+from elbowroom.server.entrance.connections import BoundedWebSocket, ConnectionLimits, Doorman
 from elbowroom.server.schema.bounds import MAX_MESSAGE
 from elbowroom.server.schema.menus import Hello
 from elbowroom.server.stores.library import Library
 from elbowroom.server.wire.pose_frame import PoseFrame
 from live_session import Client, client_of, running
 
-PATIENCE = Patience(request=10.0, reading=15.0, closing=3.0, unread=1000, idle=4)
+LIMITS = ConnectionLimits(request=10.0, reading=15.0, closing=3.0, unread=1000, idle=4)
 
 
 class Transport:
@@ -51,7 +51,7 @@ class Connection:
 
 def looked(connection: Connection, *times: float) -> bool:
     """Whether the connection is ended when the doorman looks at these times."""
-    doorman = Doorman(PATIENCE)
+    doorman = Doorman(LIMITS)
     for now in times:
         doorman.look([connection], now)
     return connection.transport.aborted
@@ -71,7 +71,7 @@ def test_who_reads_nothing_is_dropped() -> None:
 
 
 def test_who_reads_slowly_stays() -> None:
-    slow, doorman = Connection(busy=True), Doorman(PATIENCE)
+    slow, doorman = Connection(busy=True), Doorman(LIMITS)
     for now in range(0, 100, 10):
         slow.transport.waiting = 900 - 5 * now
         doorman.look([slow], float(now))
@@ -80,7 +80,7 @@ def test_who_reads_slowly_stays() -> None:
 
 def test_who_reads_steadily_stays_where_as_much_waits_at_each_look() -> None:
     """What is taken between two looks is made up for by what is sent next."""
-    steady, doorman = Connection(busy=True), Doorman(PATIENCE)
+    steady, doorman = Connection(busy=True), Doorman(LIMITS)
     steady.transport.waiting = 900
     for now in range(0, 200, 10):
         steady.transport.given += 500
@@ -104,7 +104,7 @@ def test_a_connection_that_cannot_be_closed_is_cut() -> None:
 
 
 def test_only_so_many_wait_with_nothing_to_ask() -> None:
-    waiting, doorman = [Connection() for _ in range(7)], Doorman(PATIENCE)
+    waiting, doorman = [Connection() for _ in range(7)], Doorman(LIMITS)
     for number in range(1, 8):
         doorman.look(waiting[:number], float(number))
     doorman.look(waiting, 8.0)
@@ -117,7 +117,7 @@ def test_only_so_many_wait_with_nothing_to_ask() -> None:
 @pytest.fixture(scope="module")
 def url() -> Iterator[str]:
     with pytest.MonkeyPatch.context() as patched:
-        patched.setattr(connections, "Doorman", lambda: Doorman(Patience(request=0.5, closing=0.5)))
+        patched.setattr(connections, "Doorman", lambda: Doorman(ConnectionLimits(request=0.5, closing=0.5)))
         with closing(Library.open("empty")) as library, running(library) as address:
             yield address
 

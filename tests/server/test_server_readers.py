@@ -20,7 +20,7 @@ import pytest
 import uvicorn
 
 from elbowroom.server import serving
-from elbowroom.server.entrance.connections import Doorman, Patience
+from elbowroom.server.entrance.connections import ConnectionLimits, Doorman
 from elbowroom.server.schema.commands import Input, Overlays
 from elbowroom.server.standalone.frames import PosedRun
 from elbowroom.server.stores import runs
@@ -31,7 +31,7 @@ from elbowroom.world.scene import Scene
 from live_session import LONG, client_of, running
 from place_builder import write_place
 
-PATIENCE = Patience(reading=8.0, unread=2**20)
+LIMITS = ConnectionLimits(reading=8.0, unread=2**20)
 LARGE = 2 * 2**20  # bytes: more than may wait for a client, and than a slow one takes in all of its patience
 A_LOOK = 64 * 1024  # bytes that a slow client takes from one look of the doorman to the next: 64 KiB a second
 LITTLE = 4096  # bytes
@@ -41,7 +41,7 @@ class Looks:
     """The doorman of a server."""
 
     def __init__(self) -> None:
-        self._doorman, self._now = Doorman(PATIENCE), 0.0
+        self._doorman, self._now = Doorman(LIMITS), 0.0
         self._loop: asyncio.AbstractEventLoop
         self._connections: Callable[[], Iterable[Any]]
 

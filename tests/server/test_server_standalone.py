@@ -18,7 +18,7 @@ from elbowroom.control.recordings.recording import Recorder, Recording
 from elbowroom.server.app import client_is_built
 from elbowroom.server.sessions.reports import avatar_message
 from elbowroom.server.standalone.frames import posed_frames
-from elbowroom.server.standalone.packed_run import PER_METRE, RATE, UNIT, Run, pack_run, read_run
+from elbowroom.server.standalone.packed_run import PER_METRE, RATE, UNIT, PackedRun, pack_run, read_run
 from elbowroom.server.standalone.page import page_of_recording
 from elbowroom.server.stores.avatar_store import StoredAvatar
 from elbowroom.server.wire.codec import plain
@@ -75,7 +75,7 @@ def test_what_is_packed_is_what_was_shown(walk: Path) -> None:
     frames = posed_frames(recording, humanoid)
     stored = StoredAvatar("avatar", humanoid, None)
     avatar = plain(avatar_message(stored, 0))
-    run = Run({"name": "w", "planner": "exact", "scene": {}, "avatar": avatar}, b"".join(frames), None)
+    run = PackedRun({"name": "w", "planner": "exact", "scene": {}, "avatar": avatar}, b"".join(frames), None)
     head, times, scalars, rotations, capsules, file = unpacked(pack_run(run))
     parsed = [parse(frame) for frame in frames]
     assert head["frames"] == pytest.approx(240 * RATE / 60, abs=2)

@@ -26,7 +26,7 @@ from elbowroom.errors import InputError
 from elbowroom.export.animation import Animation
 from elbowroom.geometry import quaternion
 from elbowroom.server.stores.library import Library
-from elbowroom.server.vmc.protocol import Message, Moment, Puppet, blink, messages, unity_name
+from elbowroom.server.vmc.protocol import Message, Puppet, VmcMoment, blink, messages, unity_name
 from elbowroom.server.vmc.settings import Locomotion, VmcSettings
 from elbowroom.server.vmc.stream import VmcStream, packets
 from elbowroom.server.wire.pose import Poser
@@ -49,13 +49,13 @@ def body(name: str) -> Humanoid:
     return STOCK if name == "stock" else load_humanoid_bytes(build(RECIPES[name]), "made.vrm")
 
 
-def posed(humanoid: Humanoid, seed: int = 0) -> tuple[Moment, Floats]:
+def posed(humanoid: Humanoid, seed: int = 0) -> tuple[VmcMoment, Floats]:
     """A random pose somewhere in the world, and where its joints (J, 3) are there."""
     rng = np.random.default_rng(seed)
     rotations = quaternion.from_rotation_vector(0.5 * rng.normal(size=(len(humanoid.skeleton.names), 3)))
     hips = humanoid.skeleton.positions[0] + 0.2 * rng.normal(size=3)
     place, heading = rng.normal(size=3), float(rng.uniform(-6.0, 6.0))
-    moment = Moment(1.5, tuple(place.tolist()), heading, Poser(humanoid).full_pose(rotations, hips))
+    moment = VmcMoment(1.5, tuple(place.tolist()), heading, Poser(humanoid).full_pose(rotations, hips))
     world = Animation("made", 60.0, humanoid.skeleton, rotations[None], hips[None], place[None], np.array([heading]))
     return moment, world.joints_in_world()[0]
 

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     import socket
 
     from elbowroom.cluster.fleet import FleetSettings
-    from elbowroom.cluster.replica import Offer
+    from elbowroom.cluster.replica import ServerOffer
 
 EXAMPLES = "Examples:  elbowroom serve --cluster local  |  elbowroom serve --cluster 10.0.0.5:6379 --host 0.0.0.0"
 
@@ -51,20 +51,20 @@ def serve(
 
     logging.basicConfig(level=logging.WARNING, format="%(levelname)s %(name)s: %(message)s")
     from elbowroom.cluster.fleet import FleetSettings
-    from elbowroom.cluster.replica import Offer
+    from elbowroom.cluster.replica import ServerOffer
     from elbowroom.experiment.gauntlet.scenes import load_scene
     from elbowroom.server.ending import ended_by_signals
     from elbowroom.server.serving import listen
     from elbowroom.server.sessions.walk import WalkSettings
 
-    offer = Offer(load_scene(scene), WalkSettings(planner=planner, queue_size=queue), _read(avatar))
+    offer = ServerOffer(load_scene(scene), WalkSettings(planner=planner, queue_size=queue), _read(avatar))
     with contextlib.suppress(KeyboardInterrupt), ended_by_signals(lambda: None), listen(host, port) as opened:
         tell_openness(Console(stderr=True, highlight=False), opened)
         compile_first()
         _serve(cluster, opened, offer, FleetSettings(servers, host))
 
 
-def _serve(cluster: str, opened: "socket.socket", offer: "Offer", settings: "FleetSettings") -> None:
+def _serve(cluster: str, opened: "socket.socket", offer: "ServerOffer", settings: "FleetSettings") -> None:
     import asyncio
 
     from elbowroom.cluster.connection import joined

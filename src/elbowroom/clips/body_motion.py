@@ -8,8 +8,8 @@ from numpy.typing import NDArray
 
 from elbowroom.body.bones import PARENTS
 from elbowroom.body.skeleton import Skeleton
-from elbowroom.clips.figure import Figure
 from elbowroom.clips.floor import plane_below
+from elbowroom.clips.take_figure import TakeFigure
 from elbowroom.formats.takes import Take
 from elbowroom.geometry import quaternion
 
@@ -89,7 +89,7 @@ def joint_chain(bones: tuple[str, ...], bone: str) -> list[str]:
     return chain[::-1]
 
 
-def body_motion(take: Take, figure: Figure, *, floor_known: bool) -> BodyMotion:
+def body_motion(take: Take, figure: TakeFigure, *, floor_known: bool) -> BodyMotion:
     """The motion of a take's figure.
 
     `floor_known`: the ground is where the rest pose stands (glTF); otherwise it is where the lowest sole is.
@@ -111,7 +111,7 @@ def body_motion(take: Take, figure: Figure, *, floor_known: bool) -> BodyMotion:
     return without_calibration(replace(motion, hips=motion.hips - floor))
 
 
-def _rest_floor(take: Take, figure: Figure) -> Floats:
+def _rest_floor(take: Take, figure: TakeFigure) -> Floats:
     """The ground in the file, by its rest pose: (3,) metres."""
     hips = take.tree.world_matrices(take.tree.rotations)[figure.bones["hips"], :3, 3]
     height = figure.unit * float(quaternion.rotate(figure.upright, hips)[1]) - figure.hips_height

@@ -6,11 +6,11 @@ from pathlib import Path
 
 from elbowroom.clips.body_motion import BodyMotion
 from elbowroom.clips.dodge import dodge_clips
-from elbowroom.clips.figure import Figure
 from elbowroom.clips.motion_set import STOCK, MotionSet
 from elbowroom.clips.planning_motion import PlanningMotion, planning_motion
 from elbowroom.clips.style import PLAIN_STYLE, Style
 from elbowroom.clips.swing import Swing, swing_of
+from elbowroom.clips.take_figure import TakeFigure
 from elbowroom.clips.told import Told
 
 
@@ -22,7 +22,7 @@ class Clip:
     file: str  # its name
     format: str  # "BVH", "glTF 2.0", "VRM animation 1.0"
     frames: int  # in the file
-    figure: Figure  # whose motion it is, as it was recognised
+    figure: TakeFigure  # whose motion it is, as it was recognised
     motion: BodyMotion  # the figure's bones over time
 
     @classmethod

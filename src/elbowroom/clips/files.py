@@ -9,7 +9,7 @@ from elbowroom.body.loading.hanim_names import hanim_bones
 from elbowroom.clips.body_motion import body_motion
 from elbowroom.clips.bones import gltf_bones, tree_bones
 from elbowroom.clips.clip import Clip
-from elbowroom.clips.figure import figure_of
+from elbowroom.clips.take_figure import figure_of
 from elbowroom.clips.told import Told
 from elbowroom.errors import InputError
 from elbowroom.formats.animations import read_animations, take_of

@@ -18,7 +18,7 @@ Floats = NDArray[np.float64]
 _ON_THE_SPOT = 0.3  # metres between a loop's beginning and end that are not seen as a jump
 
 
-class Moment(NamedTuple):
+class PlayedPose(NamedTuple):
     """The avatar at one time."""
 
     root: Floats  # (7,) root state
@@ -48,7 +48,7 @@ class Performance:
         """Whether it goes on at its end without a jump."""
         return bool(self.loop and np.linalg.norm(self.roots[-1, :2] - self.roots[0, :2]) < _ON_THE_SPOT)
 
-    def at(self, time: float) -> Moment:
+    def at(self, time: float) -> PlayedPose:
         """The moment `time` seconds after the beginning, at most `duration`."""
         place = min(time, self.duration) / self.frame_time
         before = min(int(place), len(self.roots) - 1)
@@ -61,7 +61,7 @@ class Performance:
 
         root = between(self.roots) if after > before else self.roots[before]
         turns = quaternion.slerp(self.rotations[before], self.rotations[after], np.full(1, share))
-        return Moment(root, between(self.uppers), turns, between(self.hips))
+        return PlayedPose(root, between(self.uppers), turns, between(self.hips))
 
 
 def perform(clip: Clip, skeleton: Skeleton, start: RootState) -> Performance:

@@ -16,7 +16,7 @@ from elbowroom.cluster.door import Door
 from elbowroom.cluster.keeper import Keeper
 from elbowroom.cluster.node import Node
 from elbowroom.cluster.nodes import Nodes, Tell
-from elbowroom.cluster.replica import Offer, Replica
+from elbowroom.cluster.replica import Replica, ServerOffer
 from elbowroom.server.serving import Front
 
 _LOOK_EVERY = 1.0  # seconds between two looks at the nodes
@@ -36,7 +36,9 @@ class FleetSettings:
 class Fleet:
     """Lives in one event loop of the process that has the door."""
 
-    def __init__(self, nodes: Nodes, offer: Offer, opened: socket.socket, settings: FleetSettings, tell: Tell) -> None:
+    def __init__(
+        self, nodes: Nodes, offer: ServerOffer, opened: socket.socket, settings: FleetSettings, tell: Tell
+    ) -> None:
         """`opened` is where the door listens; `tell` hears in one line of each server that comes or is lost."""
         self._nodes, self._opened, self._tell, self._settings = nodes, opened, tell, settings
         self._word = secrets.token_hex(16)

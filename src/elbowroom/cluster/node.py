@@ -9,7 +9,7 @@ from elbowroom.experiment.machine import program_digest
 
 
 @dataclass(frozen=True)
-class Kind:
+class NodeKind:
     """What results depend on to the last bit: the program, and what compiles its kernels for which processor."""
 
     version: str
@@ -17,11 +17,11 @@ class Kind:
     machine: tuple[tuple[str, str], ...]  # names and values, see `this_machine`
 
     @classmethod
-    def here(cls) -> "Kind":
+    def here(cls) -> "NodeKind":
         """That of this process."""
         return cls(__version__, program_digest(), tuple(sorted(this_machine().items())))
 
-    def difference(self, own: "Kind") -> str:
+    def difference(self, own: "NodeKind") -> str:
         """What is other than here, for people; empty where nothing is."""
         if self.version != own.version:
             return f"its elbowroom is {self.version}, here {own.version}"
@@ -40,14 +40,14 @@ class Node(NamedTuple):
     cores: int  # tasks that it does at once
 
 
-def made_ready(own: Kind) -> str:
+def made_ready(own: NodeKind) -> str:
     """Runs on a node: what is other there than at `own`; if nothing is, all kernels are compiled when it returns."""
     from elbowroom.server.kernels.compiling import compile_apart
     from elbowroom.server.kernels.kernel_cache import is_warm
     from elbowroom.server.kernels.kernel_files import find_place
 
     find_place()
-    other = Kind.here().difference(own)
+    other = NodeKind.here().difference(own)
     if not other and not is_warm():
         compile_apart(lambda _kernel, _number: None)
     return other

@@ -7,7 +7,7 @@ from typing import Any
 import ray
 from ray.util.scheduling_strategies import NodeAffinitySchedulingStrategy
 
-from elbowroom.cluster.node import Kind, Node, made_ready
+from elbowroom.cluster.node import Node, NodeKind, made_ready
 from elbowroom.errors import InputError
 
 _AGAIN = 2.0  # seconds between two looks at who is there
@@ -20,7 +20,7 @@ class Nodes:
 
     def __init__(self, most: int, tell: Tell) -> None:
         self._most, self._tell = most, tell  # tasks at once, of all nodes together
-        self._own = Kind.here()
+        self._own = NodeKind.here()
         self._ready: dict[str, Node] = {}
         self._asked: dict[str, tuple[Node, Any]] = {}  # nodes that are getting ready, and their answers to come
         self._refused: set[str] = set()

@@ -23,7 +23,7 @@ _ENDS_IN = 3.0  # seconds
 
 
 @dataclass(frozen=True)
-class Offer:
+class ServerOffer:
     """What all servers begin with."""
 
     scene: Scene
@@ -35,7 +35,7 @@ class Replica:
     """Runs on a node, as an actor."""
 
     def __init__(self, offer: bytes, front: Front, keeper: Any) -> None:
-        """`offer` is an `Offer`, pickled; all kernels are loaded when this returns."""
+        """`offer` is a `ServerOffer`, pickled; all kernels are loaded when this returns."""
         share_one_heap()
         let_frames_go_first()
         opened = _opened(pickle.loads(offer))
@@ -63,7 +63,7 @@ class Replica:
         self._library.close()
 
 
-def _opened(offer: Offer) -> Library:
+def _opened(offer: ServerOffer) -> Library:
     if offer.avatar is None:
         return Library.open(offer.scene, None, offer.walk)
     name, data = offer.avatar

@@ -24,7 +24,7 @@ _LONGEST = 3600.0  # seconds
 
 
 @dataclass(frozen=True, eq=False)
-class Track:
+class KeyedTrack:
     """One property of one node over time."""
 
     node: int
@@ -35,11 +35,11 @@ class Track:
 
 
 @dataclass(frozen=True, eq=False)
-class Animation:
+class KeyedAnimation:
     """One animation: a clip by name."""
 
     name: str
-    tracks: tuple[Track, ...]
+    tracks: tuple[KeyedTrack, ...]
     scaled: bool  # it moves scales too, which are not read
 
     @property
@@ -48,7 +48,7 @@ class Animation:
         return min(float(t.times[0]) for t in self.tracks), max(float(t.times[-1]) for t in self.tracks)
 
 
-def read_animations(gltf: Gltf, nodes: int) -> tuple[Animation, ...]:
+def read_animations(gltf: Gltf, nodes: int) -> tuple[KeyedAnimation, ...]:
     """All animations that move nodes; `nodes` is the number of nodes. Raises `InputError`."""
     found = []
     times: dict[int, Floats] = {}
@@ -59,7 +59,7 @@ def read_animations(gltf: Gltf, nodes: int) -> tuple[Animation, ...]:
         tracks = [_track(gltf, field, channel, nodes, times) for channel in moving if _target(channel).present]
         if tracks:
             name = field.at("name").text() or f"animation {index}"
-            found.append(Animation(name, tuple(tracks), "scale" in paths))
+            found.append(KeyedAnimation(name, tuple(tracks), "scale" in paths))
     return tuple(found)
 
 
@@ -67,7 +67,7 @@ def _target(channel: Field) -> Field:
     return channel.at("target").at("node")
 
 
-def _track(gltf: Gltf, animation: Field, channel: Field, nodes: int, known: dict[int, Floats]) -> Track:
+def _track(gltf: Gltf, animation: Field, channel: Field, nodes: int, known: dict[int, Floats]) -> KeyedTrack:
     node = _target(channel).integer(0, nodes - 1)
     path = channel.at("target").at("path").text()
     sampler = animation.at("samplers").pick(channel.at("sampler"))
@@ -81,7 +81,7 @@ def _track(gltf: Gltf, animation: Field, channel: Field, nodes: int, known: dict
         raise InputError(f"{sampler.place}: {len(values)} values for {len(times)} key frames, {mode} needs {each} each")
     if mode == "CUBICSPLINE":
         values = values.reshape(len(times), 3, -1)
-    return Track(node, path, mode, times, values)
+    return KeyedTrack(node, path, mode, times, values)
 
 
 def _times(gltf: Gltf, field: Field, known: dict[int, Floats]) -> Floats:
@@ -95,7 +95,7 @@ def _times(gltf: Gltf, field: Field, known: dict[int, Floats]) -> Floats:
     return known[index]
 
 
-def take_of(animation: Animation, tree: NodeTree, place: str) -> Take:
+def take_of(animation: KeyedAnimation, tree: NodeTree, place: str) -> Take:
     """The animation at equal time steps: those of its own keys if it is baked, else 60 a second."""
     rate = _rate(animation)
     first, last = animation.span
@@ -110,7 +110,7 @@ def take_of(animation: Animation, tree: NodeTree, place: str) -> Take:
     return Take(animation.name, tree, 1.0 / rate, rotations, translations)
 
 
-def _rate(animation: Animation) -> float:
+def _rate(animation: KeyedAnimation) -> float:
     """Key frames a second of the densest track, where it is a usual rate and a round number of its keys."""
     densest = max(animation.tracks, key=lambda track: len(track.times)).times
     if len(densest) < 2:
@@ -120,7 +120,7 @@ def _rate(animation: Animation) -> float:
     return near if abs(near - rate) < 0.02 * near else _DEFAULT_RATE
 
 
-def sample(track: Track, times: Floats) -> Floats:
+def sample(track: KeyedTrack, times: Floats) -> Floats:
     """Values (F, w) at times (F,); before the first key and after the last one the track rests."""
     keys = track.times
     k = np.clip(np.searchsorted(keys, times, side="right") - 1, 0, max(len(keys) - 2, 0))

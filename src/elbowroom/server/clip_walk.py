@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from elbowroom.body.dof import LOCAL
 from elbowroom.body.root import ROOT_STATE, RootState
-from elbowroom.clips.performance import Moment, perform
+from elbowroom.clips.performance import PlayedPose, perform
 from elbowroom.control.frame import Frame, Phase
 from elbowroom.control.key_frame_queue import KeyFrames
 from elbowroom.control.shown.body_check import BodyCheck, configuration
@@ -101,7 +101,7 @@ class ClipWalk:
         return self.avatar.poser.full_pose(self._moment.rotations, self._moment.hips)
 
     def _show(self) -> None:
-        moment: Moment = self._performance.at(self._time)
+        moment: PlayedPose = self._performance.at(self._time)
         clearance = self._check.clearance(self._check.standing(moment.root), moment.upper, self._time)
         self._moment = moment
         self.frame = Frame(

@@ -15,7 +15,7 @@ _SHOWN = 60  # characters of a wrong value that are quoted
 
 
 @dataclass(frozen=True)
-class Place:
+class JsonPlace:
     """A value, the file that it came from and its path there, such as `$.obstacles[3].size[0]`."""
 
     source: str
@@ -26,7 +26,7 @@ class Place:
         """Raise an `InputError` that names file, field and value, and says what is allowed."""
         raise InputError(f"{self.source}: {self.path} is {quoted(self.value)}; {allowed}")
 
-    def fields(self, required: Collection[str], optional: Collection[str] = ()) -> "dict[str, Place]":
+    def fields(self, required: Collection[str], optional: Collection[str] = ()) -> "dict[str, JsonPlace]":
         """The members of an object that has all `required` names, perhaps `optional` ones, and no others."""
         if not isinstance(self.value, dict):
             self.fail(f"must be an object with the fields {', '.join(required)}")
@@ -39,16 +39,16 @@ class Place:
                 near = difflib.get_close_matches(str(name), known, n=1)
                 hint = f"did you mean {near[0]!r}?" if near else f"known are {', '.join(known)}"
                 raise InputError(f"{self.source}: {self.path} has an unknown field {quoted(name)}; {hint}")
-        return {name: Place(self.source, f"{self.path}.{name}", item) for name, item in self.value.items()}
+        return {name: JsonPlace(self.source, f"{self.path}.{name}", item) for name, item in self.value.items()}
 
-    def items(self, most: int) -> "Iterator[Place]":
+    def items(self, most: int) -> "Iterator[JsonPlace]":
         """The items of a list with at most `most` of them."""
         if not isinstance(self.value, list):
             self.fail("must be a list")
         if len(self.value) > most:
             raise InputError(f"{self.source}: {self.path} has {len(self.value)} items; at most {most} are allowed")
         for i, item in enumerate(self.value):
-            yield Place(self.source, f"{self.path}[{i}]", item)
+            yield JsonPlace(self.source, f"{self.path}[{i}]", item)
 
     def number(self, low: float, high: float, *, above: bool = False) -> float:
         """A finite number in [low, high], or in (low, high] with `above`."""

@@ -3,7 +3,7 @@
 import math
 import re
 
-from elbowroom.world.json_place import Place
+from elbowroom.world.json_place import JsonPlace
 
 FARTHEST = 10_000.0  # metres, any coordinate
 LARGEST = 1_000.0  # metres, any size
@@ -12,14 +12,14 @@ _COLOR = re.compile(r"#[0-9a-fA-F]{6}")
 _FULL_TURN = 6.2832  # radians; what is larger was meant in degrees
 
 
-def read_angle(place: Place) -> float:
+def read_angle(place: JsonPlace) -> float:
     """An angle in radians."""
     if isinstance(place.value, int | float) and _FULL_TURN < abs(place.value) <= 360.0:
         place.fail(f"must be an angle in radians (were these degrees? then write {math.radians(place.value):.4f})")
     return place.number(-_FULL_TURN, _FULL_TURN)
 
 
-def read_color(place: Place) -> str:
+def read_color(place: JsonPlace) -> str:
     """A colour in six hexadecimal digits, such as "#c07a3e"."""
     if not isinstance(place.value, str) or not _COLOR.fullmatch(place.value):
         place.fail('must be a colour such as "#c07a3e"')

@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from elbowroom.errors import InputError
-from elbowroom.world.json_place import Place
+from elbowroom.world.json_place import JsonPlace
 from elbowroom.world.limits import FARTHEST, NAME, read_angle
 from elbowroom.world.obstacles.tracks.moving import FASTEST, Moving, Repeat, Track
 from elbowroom.world.shape_format import FIELDS, read_shape, type_of, write_shape
@@ -17,18 +17,18 @@ _SHORTEST, _LONGEST = 0.01, 3_600.0  # seconds between key poses
 
 
 class _Key(NamedTuple):
-    place: Place
+    place: JsonPlace
     center: list[float]
     yaw: float
     seconds: float  # until the next
 
 
-def read_moving(place: Place) -> Moving:
+def read_moving(place: JsonPlace) -> Moving:
     """The tracks in a list; raises `InputError` at the first wrong field."""
     return Moving(tuple(_read_track(item, i) for i, item in enumerate(place.items(MAX_MOVING))))
 
 
-def _read_track(place: Place, index: int) -> Track:
+def _read_track(place: JsonPlace, index: int) -> Track:
     kind = type_of(place)
     fields = place.fields(("type", *FIELDS[kind], "track"), ("name", "color", "repeat"))
     name = fields["name"].text(NAME, least=1) if "name" in fields else f"moving {kind} {index + 1}"
@@ -46,14 +46,14 @@ def _read_track(place: Place, index: int) -> Track:
     )  # fmt: skip
 
 
-def _read_repeat(place: Place) -> Repeat:
+def _read_repeat(place: JsonPlace) -> Repeat:
     names = [repeat.value for repeat in Repeat]
     if not isinstance(place.value, str) or place.value not in names:
         place.fail(f"must be one of {', '.join(names)}")
     return Repeat(place.value)
 
 
-def _read_key(place: Place) -> _Key:
+def _read_key(place: JsonPlace) -> _Key:
     fields = place.fields(("center", "seconds"), ("yaw",))
     center = fields["center"].vector(3, -FARTHEST, FARTHEST)
     yaw = read_angle(fields["yaw"]) if "yaw" in fields else 0.0

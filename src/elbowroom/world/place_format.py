@@ -8,7 +8,7 @@ import numpy as np
 
 from elbowroom.body.root import RootState
 from elbowroom.errors import InputError
-from elbowroom.world.json_place import Place
+from elbowroom.world.json_place import JsonPlace
 from elbowroom.world.limits import FARTHEST, NAME
 from elbowroom.world.obstacles.obstacles import Obstacles
 from elbowroom.world.places.floor_area import FloorArea
@@ -24,7 +24,7 @@ _SHA256 = re.compile(r"[0-9a-f]{64}")
 _TOLD = ("scale", "up", "ground", "drop", "passable")
 
 
-def read_place_field(place: Place, folder: Path | None) -> Scene:
+def read_place_field(place: JsonPlace, folder: Path | None) -> Scene:
     """The scene of the place that a document names or carries; raises `InputError`."""
     fields = place.fields(("file",), ("sha256", *_TOLD, "parts", "data", "floor"))
     file = fields["file"].text(_LONGEST_FILE, least=1)
@@ -51,7 +51,7 @@ def write_place(place: ScenePlace, obstacles: Obstacles) -> dict[str, Any]:
     return {"file": place.file, **digest, **place.options.to_dict(), **packed_parts(obstacles, place.parts), **floor}
 
 
-def _carried(fields: dict[str, Place], place: ScenePlace) -> Scene:
+def _carried(fields: dict[str, JsonPlace], place: ScenePlace) -> Scene:
     """The scene of parts that the document carries; ground, start and finish are told beside them."""
     if "parts" not in fields:
         fields["data"].fail("needs the field 'parts' beside it")
@@ -71,7 +71,7 @@ def _carried(fields: dict[str, Place], place: ScenePlace) -> Scene:
     return Scene("", "", "", (0.0, 0.0), (1.0, 1.0), *whole, obstacles, carried)
 
 
-def _read_floor(place: Place) -> FloorArea:
+def _read_floor(place: JsonPlace) -> FloorArea:
     fields = place.fields(("origin", "cell", "shape", "data"))
     x, z = fields["origin"].vector(2, -2 * FARTHEST, 2 * FARTHEST)
     wide, deep = (int(size) for size in fields["shape"].vector(2, 1, _MOST_ALONG))
@@ -79,7 +79,7 @@ def _read_floor(place: Place) -> FloorArea:
     return FloorArea.unpacked((x, z), cell, (wide, deep), data, f"{place.source}: {place.path}")
 
 
-def _read_options(fields: dict[str, Place]) -> PlaceOptions:
+def _read_options(fields: dict[str, JsonPlace]) -> PlaceOptions:
     up = fields["up"].text(2) if "up" in fields else None
     if up is not None and up not in AXES:
         fields["up"].fail(f"must be one of {', '.join(AXES)}")
@@ -92,12 +92,12 @@ def _read_options(fields: dict[str, Place]) -> PlaceOptions:
     )
 
 
-def _patterns(fields: dict[str, Place], name: str) -> tuple[str, ...]:
+def _patterns(fields: dict[str, JsonPlace], name: str) -> tuple[str, ...]:
     items = fields[name].items(_MOST_PATTERNS // 2) if name in fields else ()
     return tuple(item.text(_LONGEST_PATTERN, least=1) for item in items)
 
 
-def _beside(field: Place, name: str, folder: Path | None) -> Path:
+def _beside(field: JsonPlace, name: str, folder: Path | None) -> Path:
     """The file of that name in the scene's own folder, or below it."""
     if folder is None:
         field.fail("a scene that names a file must be loaded from a file that lies beside it")

@@ -16,7 +16,7 @@ from elbowroom.body.root import RootState
 from elbowroom.errors import InputError
 from elbowroom.geometry import quaternion
 from elbowroom.world.ground.making import walked_over
-from elbowroom.world.json_place import Place
+from elbowroom.world.json_place import JsonPlace
 from elbowroom.world.limits import FARTHEST, LARGEST, NAME, read_angle, read_color
 from elbowroom.world.moving_format import read_moving, write_moving
 from elbowroom.world.obstacles.obstacles import Obstacles
@@ -50,7 +50,7 @@ def read_scene(document: Any, source: str, folder: Path | None = None) -> Scene:
     """
     placed = isinstance(document, dict) and "place" in document
     needed, possible = (_ALWAYS, ("place", *_FOUND)) if placed else ((*_ALWAYS, *_FOUND), ())
-    fields = Place(source, "$", document).fields(
+    fields = JsonPlace(source, "$", document).fields(
         needed, ("$schema", "title", "description", "moving", "tour", *possible)
     )
     fields["format"].constant(FORMAT)
@@ -86,7 +86,7 @@ def _in_place(found: Scene, more: Obstacles) -> Obstacles:
     return walked_over(with_more(found.obstacles, more), found.place.floor if found.place else None)
 
 
-def _read_ground(place: Place) -> tuple[tuple[float, float], tuple[float, float]]:
+def _read_ground(place: JsonPlace) -> tuple[tuple[float, float], tuple[float, float]]:
     """The middle of the ground and its size."""
     fields = place.fields(("size",), ("center",))
     center = _pair(fields["center"].vector(2, -FARTHEST, FARTHEST)) if "center" in fields else (0.0, 0.0)
@@ -100,13 +100,13 @@ def _pair(values: list[float]) -> tuple[float, float]:
     return values[0], values[1]
 
 
-def _read_start(place: Place) -> RootState:
+def _read_start(place: JsonPlace) -> RootState:
     fields = place.fields(("position",), ("heading",))
     x, z = fields["position"].vector(2, -FARTHEST, FARTHEST)
     return RootState(x=x, z=z, heading=read_angle(fields["heading"]) if "heading" in fields else 0.0)
 
 
-def _read_gate(place: Place) -> Gate:
+def _read_gate(place: JsonPlace) -> Gate:
     fields = place.fields(("position",), ("heading", "width"))
     return Gate(
         position=_pair(fields["position"].vector(2, -FARTHEST, FARTHEST)),
@@ -115,7 +115,7 @@ def _read_gate(place: Place) -> Gate:
     )
 
 
-def _read_obstacles(place: Place) -> Obstacles:
+def _read_obstacles(place: JsonPlace) -> Obstacles:
     rows = [_read_obstacle(item, i) for i, item in enumerate(place.items(MAX_OBSTACLES))]
     if not rows:
         return Obstacles()
@@ -127,18 +127,18 @@ def _read_obstacles(place: Place) -> Obstacles:
     return Obstacles(shapes, np.array(centers), np.array(rotations), names)
 
 
-def _read_colors(place: Place | None, names: Sequence[str]) -> dict[str, str]:
+def _read_colors(place: JsonPlace | None, names: Sequence[str]) -> dict[str, str]:
     """The colours in a list of obstacles that have been read, by their names."""
     if place is None:
         return {}
     colored = [(i, name) for i, name in enumerate(names) if "color" in place.value[i]]
     return {
-        name: read_color(Place(place.source, f"{place.path}[{i}].color", place.value[i]["color"]))
+        name: read_color(JsonPlace(place.source, f"{place.path}[{i}].color", place.value[i]["color"]))
         for i, name in colored
     }
 
 
-def _read_obstacle(place: Place, index: int) -> tuple[str, Shape, list[float], NDArray[np.float64]]:
+def _read_obstacle(place: JsonPlace, index: int) -> tuple[str, Shape, list[float], NDArray[np.float64]]:
     """One obstacle: name, shape, centre, rotation. Its type decides which fields it has."""
     kind = type_of(place)
     fields = place.fields(("type", "center", *FIELDS[kind]), ("name", "color", *(_TURNS if kind != "sphere" else ())))
@@ -148,7 +148,7 @@ def _read_obstacle(place: Place, index: int) -> tuple[str, Shape, list[float], N
     return name, read_shape(kind, fields), center, rotation
 
 
-def _read_rotation(place: Place, fields: dict[str, Place]) -> NDArray[np.float64]:
+def _read_rotation(place: JsonPlace, fields: dict[str, JsonPlace]) -> NDArray[np.float64]:
     given = [name for name in _TURNS if name in fields]
     if len(given) > 1:
         raise InputError(f"{place.source}: {place.path} has both {' and '.join(given)}; give one of them")
@@ -161,7 +161,7 @@ def _read_rotation(place: Place, fields: dict[str, Place]) -> NDArray[np.float64
     return quaternion.IDENTITY
 
 
-def _three(place: Place) -> list[Place]:
+def _three(place: JsonPlace) -> list[JsonPlace]:
     if not isinstance(place.value, list) or len(place.value) != 3:
         place.fail("must be a list of 3 angles in radians, about X, Y and Z")
     return list(place.items(3))
@@ -173,7 +173,7 @@ def _from_euler(angles: list[float]) -> NDArray[np.float64]:
     return quaternion.multiply(about_y, quaternion.multiply(about_x, about_z))
 
 
-def _unit_quaternion(place: Place) -> NDArray[np.float64]:
+def _unit_quaternion(place: JsonPlace) -> NDArray[np.float64]:
     """Four numbers that are nearly a unit quaternion: one of them is at least a half, as in every unit quaternion."""
     values = np.array(place.vector(4, -1.0, 1.0))
     if np.max(np.abs(values)) < 0.49:
@@ -183,13 +183,13 @@ def _unit_quaternion(place: Place) -> NDArray[np.float64]:
     return quaternion.normalize(values)
 
 
-def _refuse_off_the_ground(scene: Scene, fields: dict[str, Place]) -> None:
+def _refuse_off_the_ground(scene: Scene, fields: dict[str, JsonPlace]) -> None:
     """Start and finish lie on the ground, and the way from the one to the other is not over before it begins."""
     for name, point in (("start", (scene.start.x, scene.start.z)), ("finish", scene.finish.position)):
         edges = zip(point, scene.ground_center, scene.ground_size, strict=True)
         beyond = max(abs(at - middle) - 0.5 * size for at, middle, size in edges)
         if beyond > 0.0:
-            place = Place(fields["name"].source, f"$.{name}.position", list(point))
+            place = JsonPlace(fields["name"].source, f"$.{name}.position", list(point))
             place.fail(f"it lies {beyond:.3g} m off the ground; move it or make the ground larger")
     if scene.finished(scene.start):
         fields.get("finish", fields["name"]).fail(
@@ -197,7 +197,7 @@ def _refuse_off_the_ground(scene: Scene, fields: dict[str, Place]) -> None:
         )
 
 
-def _refuse_start_in_obstacle(scene: Scene, place: Place) -> None:
+def _refuse_start_in_obstacle(scene: Scene, place: JsonPlace) -> None:
     """What is no higher than a step is stood on where the ground is not plain."""
     x, z, ground = scene.start.x, scene.start.z, scene.ground
     height = on_ground(scene, scene.start).height
@@ -211,7 +211,7 @@ def _refuse_start_in_obstacle(scene: Scene, place: Place) -> None:
     found = scene.obstacles.nearest(legs, [_STANCE_RADIUS], (x, z), 0.0)
     if found is not None and found.distance < 0.0:
         name = scene.obstacles.names[found.obstacle]
-        here = Place(place.source, f"{place.path}.position", [x, z])
+        here = JsonPlace(place.source, f"{place.path}.position", [x, z])
         here.fail(f"it stands in the obstacle {name!r}; move one of them")
 
 

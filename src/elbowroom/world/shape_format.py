@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from elbowroom.errors import InputError
-from elbowroom.world.json_place import Place
+from elbowroom.world.json_place import JsonPlace
 from elbowroom.world.limits import LARGEST
 from elbowroom.world.obstacles.meshes.hulls import THINNEST, FlatHullError, surface_of
 from elbowroom.world.obstacles.shapes import Box, Capsule, Cylinder, Hull, Mesh, Shape, Sphere, Vector
@@ -26,17 +26,17 @@ FIELDS: dict[str, tuple[str, ...]] = {
 }
 
 
-def type_of(place: Place) -> str:
+def type_of(place: JsonPlace) -> str:
     """The type of an obstacle; a box where it has none, so that what lacks is told as for a box."""
     if not isinstance(place.value, dict) or "type" not in place.value:
         return "box"
-    named = Place(place.source, f"{place.path}.type", place.value["type"])
+    named = JsonPlace(place.source, f"{place.path}.type", place.value["type"])
     if not isinstance(named.value, str) or named.value not in FIELDS:
         named.fail(f"must be one of {', '.join(FIELDS)}")
     return named.value
 
 
-def read_shape(kind: str, fields: dict[str, Place]) -> Shape:
+def read_shape(kind: str, fields: dict[str, JsonPlace]) -> Shape:
     """The shape of a type from an obstacle's fields."""
     return _READERS[kind](fields)
 
@@ -58,7 +58,7 @@ def write_shape(shape: Shape) -> dict[str, Any]:
             return {"type": "mesh", "vertices": shape.vertices.tolist(), "faces": shape.faces.tolist()}
 
 
-def _length(place: Place) -> float:
+def _length(place: JsonPlace) -> float:
     return place.number(0.0, LARGEST, above=True)
 
 
@@ -67,7 +67,7 @@ def _vector(values: list[float]) -> Vector:
     return x, y, z
 
 
-def _read_hull(fields: dict[str, Place]) -> Hull:
+def _read_hull(fields: dict[str, JsonPlace]) -> Hull:
     place = fields["points"]
     points = [item.vector(3, -LARGEST, LARGEST) for item in place.items(MOST_POINTS)]
     if len(points) < FEWEST_POINTS:
@@ -84,7 +84,7 @@ def _read_hull(fields: dict[str, Place]) -> Hull:
     return hull
 
 
-def _read_mesh(fields: dict[str, Place]) -> Mesh:
+def _read_mesh(fields: dict[str, JsonPlace]) -> Mesh:
     corners, triangles = fields["vertices"], fields["faces"]
     vertices = [item.vector(3, -LARGEST, LARGEST) for item in corners.items(MOST_VERTICES)]
     if len(vertices) < FEWEST_VERTICES:
@@ -95,7 +95,7 @@ def _read_mesh(fields: dict[str, Place]) -> Mesh:
     return Mesh(np.array(vertices), np.array(faces))
 
 
-def _corner_numbers(place: Place, last: int) -> list[int]:
+def _corner_numbers(place: JsonPlace, last: int) -> list[int]:
     """The numbers of a triangle's corners."""
     numbers = place.vector(3, 0, MOST_VERTICES - 1)
     if not all(number.is_integer() for number in numbers):
@@ -105,7 +105,7 @@ def _corner_numbers(place: Place, last: int) -> list[int]:
     return [int(number) for number in numbers]
 
 
-_READERS: dict[str, Callable[[dict[str, Place]], Shape]] = {
+_READERS: dict[str, Callable[[dict[str, JsonPlace]], Shape]] = {
     "box": lambda fields: Box(_vector(fields["size"].vector(3, 0.0, LARGEST, above=True))),
     "sphere": lambda fields: Sphere(_length(fields["radius"])),
     "capsule": lambda fields: Capsule(_length(fields["radius"]), _length(fields["length"])),

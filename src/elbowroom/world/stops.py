@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from elbowroom.world.json_place import Place
+from elbowroom.world.json_place import JsonPlace
 from elbowroom.world.limits import FARTHEST
 
 VIEWS = ("behind", "side", "front", "above", "orbit", "shoulder")  # the cameras of the page
@@ -24,12 +24,12 @@ class Stop:
     seconds: float = 3.0  # how long one stays
 
 
-def read_tour(place: Place) -> tuple[Stop, ...]:
+def read_tour(place: JsonPlace) -> tuple[Stop, ...]:
     """The stops in a list, in order; raises `InputError` at the first wrong field."""
     return tuple(_read_stop(item) for item in place.items(MAX_STOPS))
 
 
-def _read_stop(place: Place) -> Stop:
+def _read_stop(place: JsonPlace) -> Stop:
     fields = place.fields(("position",), ("view", "say", "seconds"))
     x, *height, z = _position(fields["position"])
     view = fields["view"].value if "view" in fields else Stop.view
@@ -44,7 +44,7 @@ def _read_stop(place: Place) -> Stop:
     )
 
 
-def _position(place: Place) -> list[float]:
+def _position(place: JsonPlace) -> list[float]:
     """`[x, z]` or `[x, height, z]`."""
     size = len(place.value) if isinstance(place.value, list) else 0
     if size not in (2, 3):

@@ -39,7 +39,7 @@ def stream_to(address: str | None, root: str, *, bundles: bool) -> "VmcStream | 
 
 def in_time(stream: "VmcStream", humanoid: "Humanoid") -> "Callable[[Frame], None]":
     """What sends each frame when its time has come by the clock."""
-    from elbowroom.server.vmc.protocol import Moment
+    from elbowroom.server.vmc.protocol import VmcMoment
     from elbowroom.server.wire.pose import Poser
 
     poser, began = Poser(humanoid), time.monotonic()
@@ -47,6 +47,6 @@ def in_time(stream: "VmcStream", humanoid: "Humanoid") -> "Callable[[Frame], Non
     def send(frame: "Frame") -> None:
         time.sleep(max(began + frame.time - time.monotonic(), 0.0))
         x, z, heading = frame.root[:3].tolist()
-        stream.show(stream, humanoid, Moment(frame.time, (x, 0.0, z), heading, poser.node_pose(frame.q, frame.root)))
+        stream.show(stream, humanoid, VmcMoment(frame.time, (x, 0.0, z), heading, poser.node_pose(frame.q, frame.root)))
 
     return send

@@ -28,8 +28,8 @@ from elbowroom.formats.hanim.humanoid_node import (
 from elbowroom.formats.hanim.skin import skin_weights
 from elbowroom.formats.x3d.expand import MAX_NODES as MAX_VISITED
 from elbowroom.formats.x3d.expand import expand
-from elbowroom.formats.x3d.files import MAX_BYTES, Library, parse_x3d
-from elbowroom.formats.x3d.looks import Looks, linear_colours
+from elbowroom.formats.x3d.files import MAX_BYTES, FilesBeside, parse_x3d
+from elbowroom.formats.x3d.materials import Materials, linear_colours
 from elbowroom.formats.x3d.mesh import Mesh
 from elbowroom.formats.x3d.model import Node, Nodes, Notes, X3dScene
 from elbowroom.formats.x3d.parts import shown_parts
@@ -55,7 +55,7 @@ class Joint:
 
 
 @dataclass(frozen=True, eq=False)
-class Placed:
+class PlacedNode:
     """A node with a DEF name that places what is in it, as the file has it, and the glTF node that it became."""
 
     node: int
@@ -79,7 +79,7 @@ class HanimFigure:
     info: dict[str, str]  # of the humanoid and the header: authorName, copyright, license, ...
     notes: tuple[str, ...]
     scene: X3dScene  # as it was written
-    placed: dict[str, Placed]  # by DEF name
+    placed: dict[str, PlacedNode]  # by DEF name
     centred: bool  # its joints stand in H-Anim's default pose, not as the file turns them
 
     def gltf(self) -> Gltf:
@@ -96,8 +96,8 @@ def parse_figure(data: bytes, file: str, folder: Path | None = None, default_pos
     """The same for bytes; `folder` is where files that it names may lie (none for an upload)."""
     notes = Notes()
     scene = parse_x3d(data, file, notes)
-    library = Library(folder, notes)
-    return _Maker(scene, expand(scene, library), library, notes, default_pose).figure()
+    beside = FilesBeside(folder, notes)
+    return _Maker(scene, expand(scene, beside), beside, notes, default_pose).figure()
 
 
 def parse_scenery(data: bytes, file: str, folder: Path | None = None) -> tuple[Gltf, tuple[str, ...]]:
@@ -107,23 +107,23 @@ def parse_scenery(data: bytes, file: str, folder: Path | None = None) -> tuple[G
     """
     notes = Notes()
     scene = parse_x3d(data, file, notes)
-    library = Library(folder, notes)
-    made = _Maker(scene, expand(scene, library), library, notes, default_pose=False).scenery()
+    beside = FilesBeside(folder, notes)
+    made = _Maker(scene, expand(scene, beside), beside, notes, default_pose=False).scenery()
     return made, tuple(notes.lines)
 
 
 class _Maker:
-    def __init__(self, scene: X3dScene, roots: Nodes, library: Library, notes: Notes, default_pose: bool) -> None:
+    def __init__(self, scene: X3dScene, roots: Nodes, beside: FilesBeside, notes: Notes, default_pose: bool) -> None:
         self._scene, self._roots, self._notes = scene, roots, notes
         self._draft = GlbDraft()
-        self._looks = Looks(self._draft, library, notes)
+        self._materials = Materials(self._draft, beside, notes)
         self._meshes: dict[int, tuple[int, Mesh] | None] = {}
         self._joints: list[tuple[Joint, Node]] = []
         self._placed: set[int] = set()  # joints; each has one place, wherever else the file repeats it
         self._displacers: dict[int, tuple[Displacer, ...]] = {}  # by the Coordinate node whose points they move
         self._vertices = self._shapes = 0
         self._default_pose = default_pose
-        self._named: dict[str, Placed] = {}
+        self._named: dict[str, PlacedNode] = {}
 
     def figure(self) -> HanimFigure:
         top = self._draft.add_node("figure", scale=np.full(3, self._scene.metre))
@@ -199,7 +199,7 @@ class _Maker:
             placing.scale,
         )
         if node.name:
-            placed = Placed(made, node.kind, placing.translation, placing.rotation, placing.stretch)
+            placed = PlacedNode(made, node.kind, placing.translation, placing.rotation, placing.stretch)
             self._named.setdefault(node.name, placed)
         if is_joint:
             self._joints.append((Joint(made, node.text("name"), node.name, placing.center), node))
@@ -237,7 +237,7 @@ class _Maker:
             attributes["COLOR_0"] = draft.add_vertices(linear_colours(mesh.colours))
         if mesh.uvs is not None:
             attributes["TEXCOORD_0"] = draft.add_vertices(mesh.uvs * [1.0, -1.0] + [0.0, 1.0])
-        material = self._looks.material(
+        material = self._materials.material(
             node.node("appearance"), mesh.colours is not None, mesh.uvs is not None, mesh.two_sided
         )
         primitive = {"attributes": attributes, "indices": draft.add_indices(mesh.triangles), "material": material}

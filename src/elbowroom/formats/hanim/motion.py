@@ -7,8 +7,8 @@ by routes that stand outside of PROTOs; Scripts and interpolators of other kinds
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.formats.animations import Animation, Track, take_of
-from elbowroom.formats.hanim.figure import HanimFigure, Placed
+from elbowroom.formats.animations import KeyedAnimation, KeyedTrack, take_of
+from elbowroom.formats.hanim.figure import HanimFigure, PlacedNode
 from elbowroom.formats.nodes import NodeTree
 from elbowroom.formats.takes import Take
 from elbowroom.formats.x3d.model import Node, X3dScene
@@ -21,7 +21,7 @@ _LONGEST = 3600.0  # seconds of one cycle
 _MAX_CLIPS = 1_000
 
 
-def hanim_animations(figure: HanimFigure) -> tuple[Animation, ...]:
+def hanim_animations(figure: HanimFigure) -> tuple[KeyedAnimation, ...]:
     """What each TimeSensor moves, by its description or DEF name; raises `InputError` for wrong keys."""
     scene = figure.scene
     clocks = _clocks(scene)
@@ -33,7 +33,7 @@ def hanim_animations(figure: HanimFigure) -> tuple[Animation, ...]:
             driven.setdefault(clocks[route.source], {})[placed.node, path] = route.source
     keys = _Keys(scene)
     return tuple(
-        Animation(
+        KeyedAnimation(
             scene.named[clock].text("description") or clock,
             tuple(keys.track(scene.named[clock], node, path, name) for (node, path), name in moved.items()),
             scaled=False,
@@ -42,7 +42,7 @@ def hanim_animations(figure: HanimFigure) -> tuple[Animation, ...]:
     )
 
 
-def hanim_take(animation: Animation, figure: HanimFigure, tree: NodeTree, place: str) -> Take:
+def hanim_take(animation: KeyedAnimation, figure: HanimFigure, tree: NodeTree, place: str) -> Take:
     """The animation at equal time steps; its rest pose is H-Anim's default pose, `tree` the nodes of the figure.
 
     What the animation moves rests where nothing has moved it yet; the rest of the figure stays as the file places it.
@@ -65,7 +65,7 @@ def hanim_take(animation: Animation, figure: HanimFigure, tree: NodeTree, place:
     return Take(take.name, rest, take.frame_time, take.rotations, take.translations)
 
 
-def _rests(placed: Placed, figure: HanimFigure, moved: set[int]) -> bool:
+def _rests(placed: PlacedNode, figure: HanimFigure, moved: set[int]) -> bool:
     """Whether a node has a rest pose of its own, other than where the file has it."""
     if placed.kind == "HAnimJoint":
         return figure.centred
@@ -106,7 +106,7 @@ class _Keys:
         self._values: dict[str, Floats] = {}
         self._times: dict[tuple[str, str], Floats] = {}
 
-    def track(self, clock: Node, node: int, path: str, name: str) -> Track:
+    def track(self, clock: Node, node: int, path: str, name: str) -> KeyedTrack:
         """What an interpolator does to a node; raises `InputError`."""
         interpolator = self._scene.named[name]
         if name not in self._values:
@@ -117,7 +117,7 @@ class _Keys:
         times, values = self._times[clock.name, name], self._values[name]
         if len(values) != len(times):
             raise interpolator.wrong("keyValue", f"{len(times)} values, one for each key, not {len(values)}")
-        return Track(node, path, "LINEAR", times, values)
+        return KeyedTrack(node, path, "LINEAR", times, values)
 
 
 def _cycle(clock: Node) -> float:

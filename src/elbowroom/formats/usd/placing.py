@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.errors import InputError
-from elbowroom.formats.animations import Track, sample
+from elbowroom.formats.animations import KeyedTrack, sample
 from elbowroom.formats.usd.prims import Attribute, Prim
 from elbowroom.geometry import quaternion
 
@@ -59,7 +59,7 @@ def values_at(prim: Prim, name: str, width: int, times: Floats | None) -> Floats
         return np.tile(_row(prim, name, width, first), (1 if times is None else len(times), 1))
     keys = sorted(known.samples)
     rows = np.stack([_row(prim, name, width, known.samples[key]) for key in keys])
-    return sample(Track(0, "", "LINEAR", np.array(keys), rows), times)
+    return sample(KeyedTrack(0, "", "LINEAR", np.array(keys), rows), times)
 
 
 def _row(prim: Prim, name: str, width: int, value: object) -> Floats:

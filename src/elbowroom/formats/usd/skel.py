@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.errors import InputError
-from elbowroom.formats.animations import Animation, Track, take_of
+from elbowroom.formats.animations import KeyedAnimation, KeyedTrack, take_of
 from elbowroom.formats.nodes import NodeTree
 from elbowroom.formats.takes import MAX_POSES, Take
 from elbowroom.formats.usd.placing import places, sampled_times
@@ -76,8 +76,8 @@ def usd_take(skeleton: UsdSkeleton, place: str) -> Take:
     if not tracks:
         raise InputError(f"{place} has no rotations or translations over time")
     first = min(float(track.times[0]) for track in tracks)
-    timed = tuple(Track(t.node, t.path, t.mode, (t.times - first) / rate, t.values) for t in tracks)
-    return take_of(Animation(skeleton.name, timed, scaled=False), tree, place)
+    timed = tuple(KeyedTrack(t.node, t.path, t.mode, (t.times - first) / rate, t.values) for t in tracks)
+    return take_of(KeyedAnimation(skeleton.name, timed, scaled=False), tree, place)
 
 
 def _above(skeleton: UsdSkeleton) -> list[Prim]:
@@ -139,7 +139,7 @@ def _rest(prim: Prim, paths: tuple[str, ...]) -> tuple[Floats, Floats, Floats]:
     return local[:, :3, 3], np.stack([quaternion.from_matrix(each) for each in axes]), scales
 
 
-def _of_joints(skeleton: UsdSkeleton, first: int) -> tuple[Track, ...]:
+def _of_joints(skeleton: UsdSkeleton, first: int) -> tuple[KeyedTrack, ...]:
     """What the animation does to each joint, by the time codes of the file; `first` is the node of the first joint."""
     prim = skeleton.animation
     places_of = {path: first + i for i, path in enumerate(skeleton.chain[-1].texts("joints"))}
@@ -156,7 +156,9 @@ def _of_joints(skeleton: UsdSkeleton, first: int) -> tuple[Track, ...]:
             rows = np.stack([_rows(prim, name, samples[key], len(paths), width) for key in keys])[..., order]
             times = np.array(keys)
             tracks += [
-                Track(node, name[:-1], "LINEAR", times, rows[:, i]) for i, node in enumerate(nodes) if node is not None
+                KeyedTrack(node, name[:-1], "LINEAR", times, rows[:, i])
+                for i, node in enumerate(nodes)
+                if node is not None
             ]
     return tuple(tracks)
 
@@ -170,7 +172,7 @@ def _rows(prim: Prim, name: str, value: object, joints: int, width: int) -> Floa
     return rows
 
 
-def _of_prims(above: list[Prim]) -> tuple[Track, ...]:
+def _of_prims(above: list[Prim]) -> tuple[KeyedTrack, ...]:
     """What moves the prims above the skeleton."""
     tracks = []
     for node, prim in enumerate(above, start=1):
@@ -178,7 +180,7 @@ def _of_prims(above: list[Prim]) -> tuple[Track, ...]:
         if len(times):
             moved, turned, _ = places(prim, times)
             tracks += [
-                Track(node, "translation", "LINEAR", times, moved),
-                Track(node, "rotation", "LINEAR", times, turned),
+                KeyedTrack(node, "translation", "LINEAR", times, moved),
+                KeyedTrack(node, "rotation", "LINEAR", times, turned),
             ]
     return tuple(tracks)

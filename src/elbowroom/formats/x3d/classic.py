@@ -11,7 +11,7 @@ import numpy as np
 
 from elbowroom.errors import InputError
 from elbowroom.formats.x3d.model import MAX_DEPTH, Interface, Is, Node, Nodes, Notes, Route, Scope, Value, X3dScene
-from elbowroom.formats.x3d.tokens import Kind, Token, Tokens
+from elbowroom.formats.x3d.tokens import Token, TokenKind, Tokens
 
 _EVENTS = {"eventIn", "eventOut", "inputOnly", "outputOnly"}
 _FIELDS = {"field", "exposedField", "initializeOnly", "inputOutput"}
@@ -84,12 +84,14 @@ class _Parser:
 
     def _statement(self, inside: _Statements) -> None:
         token = self._tokens.next()
-        ends = token.kind is Kind.END if inside.proto is None else token.kind is Kind.SIGN and token.text == "}"
+        ends = (
+            token.kind is TokenKind.END if inside.proto is None else token.kind is TokenKind.SIGN and token.text == "}"
+        )
         if ends:
             self._open.pop()
-        elif token.kind is Kind.WORD and token.text in _HEADER and inside.proto is None:
+        elif token.kind is TokenKind.WORD and token.text in _HEADER and inside.proto is None:
             self._header(token.text)
-        elif token.kind is Kind.WORD:
+        elif token.kind is TokenKind.WORD:
             if not self._is_declaration(token, inside.scope):
                 self._node(token, inside.scope, inside.nodes.append)
         else:
@@ -97,11 +99,11 @@ class _Parser:
 
     def _field(self, inside: _Fields) -> None:
         token = self._tokens.next()
-        if token.kind is Kind.SIGN and token.text == "}":
+        if token.kind is TokenKind.SIGN and token.text == "}":
             self._open.pop()
             if inside.node.name:
                 inside.scope.nodes[inside.node.name] = inside.node
-        elif token.kind is not Kind.WORD:
+        elif token.kind is not TokenKind.WORD:
             raise self._tokens.wrong(token, f"a field of {inside.node.kind[:40]} or '}}'")
         elif token.text in _EVENTS or token.text in _FIELDS:  # of a Script
             self._tokens.word("a type")
@@ -113,16 +115,16 @@ class _Parser:
 
     def _element(self, inside: _List) -> None:
         token = self._tokens.next()
-        if token.kind is Kind.SIGN and token.text == "]":
+        if token.kind is TokenKind.SIGN and token.text == "]":
             self._open.pop()
-        elif token.kind is Kind.WORD and token.text != "NULL":
+        elif token.kind is TokenKind.WORD and token.text != "NULL":
             self._node(token, inside.scope, inside.nodes.append)
-        elif token.kind is not Kind.WORD:
+        elif token.kind is not TokenKind.WORD:
             raise self._tokens.wrong(token, "a node or ']'")
 
     def _declared(self, inside: _Declaration) -> None:
         token = self._tokens.next()
-        if token.kind is Kind.SIGN and token.text == "]":
+        if token.kind is TokenKind.SIGN and token.text == "]":
             self._tokens.sign("{", f"before the body of PROTO {inside.proto.name[:40]}")
             self._open[-1] = _Statements(inside.proto.body, inside.scope, inside.proto)
             return
@@ -137,15 +139,15 @@ class _Parser:
     def _value(self, fields: dict[str, Value], name: str, scope: Scope) -> None:
         """What follows a field's name."""
         token = self._tokens.peek()
-        if token.kind is Kind.NUMBER:
+        if token.kind is TokenKind.NUMBER:
             fields[name] = self._tokens.numbers()
             return
         self._tokens.next()
-        if token.kind is Kind.TEXT:
+        if token.kind is TokenKind.TEXT:
             fields[name] = (token.text,)
-        elif token.kind is Kind.SIGN and token.text == "[":
+        elif token.kind is TokenKind.SIGN and token.text == "[":
             self._list(fields, name, scope)
-        elif token.kind is not Kind.WORD:
+        elif token.kind is not TokenKind.WORD:
             raise self._tokens.wrong(token, f"a value of {name[:40]}")
         elif token.text == "IS":
             fields[name] = Is(self._tokens.word("the name of a field"))
@@ -165,9 +167,9 @@ class _Parser:
             fields[name] = numbers
             return
         token = self._tokens.peek()
-        if token.kind is Kind.TEXT:
+        if token.kind is TokenKind.TEXT:
             fields[name] = self._texts()
-        elif token.kind is Kind.NUMBER or token.text in ("TRUE", "FALSE", "true", "false"):
+        elif token.kind is TokenKind.NUMBER or token.text in ("TRUE", "FALSE", "true", "false"):
             fields[name] = self._booleans(token)
         else:
             nodes: Nodes = []
@@ -176,9 +178,9 @@ class _Parser:
 
     def _texts(self) -> tuple[str, ...]:
         texts = []
-        while (token := self._tokens.next()).kind is Kind.TEXT:
+        while (token := self._tokens.next()).kind is TokenKind.TEXT:
             texts.append(token.text)
-        if token.kind is not Kind.SIGN or token.text != "]":
+        if token.kind is not TokenKind.SIGN or token.text != "]":
             raise self._tokens.wrong(token, "a text or ']'")
         return tuple(texts)
 
@@ -187,8 +189,10 @@ class _Parser:
         values = []
         while (token := self._tokens.next()).text in ("TRUE", "FALSE", "true", "false"):
             values.append(float(token.text.lower() == "true"))
-        if token.kind is not Kind.SIGN or token.text != "]":
-            raise self._tokens.wrong(token, "a number or ']'" if first.kind is Kind.NUMBER else "TRUE, FALSE or ']'")
+        if token.kind is not TokenKind.SIGN or token.text != "]":
+            raise self._tokens.wrong(
+                token, "a number or ']'" if first.kind is TokenKind.NUMBER else "TRUE, FALSE or ']'"
+            )
         return np.array(values)
 
     def _node(self, token: Token, scope: Scope, keep: Callable[[Node], None]) -> None:
@@ -200,7 +204,7 @@ class _Parser:
         if token.text == "DEF":
             name = self._tokens.word("a name")
             token = self._tokens.next()
-        if token.kind is not Kind.WORD:
+        if token.kind is not TokenKind.WORD:
             raise self._tokens.wrong(token, "a node")
         kind = token.text
         self._tokens.sign("{", f"after {kind[:40]}")
@@ -248,15 +252,15 @@ class _Parser:
         name = self._tokens.word("a name")
         self._tokens.sign("[", f"after EXTERNPROTO {name[:40]}")
         fields = set()
-        while (token := self._tokens.next()).text in _EVENTS | _FIELDS and token.kind is Kind.WORD:
+        while (token := self._tokens.next()).text in _EVENTS | _FIELDS and token.kind is TokenKind.WORD:
             self._tokens.word("a type")
             fields.add(self._tokens.word("a name"))
-        if token.kind is not Kind.SIGN or token.text != "]":
+        if token.kind is not TokenKind.SIGN or token.text != "]":
             raise self._tokens.wrong(token, "field, exposedField, eventIn, eventOut or ']'")
         token = self._tokens.next()
-        if token.kind is Kind.TEXT:
+        if token.kind is TokenKind.TEXT:
             urls: tuple[str, ...] = (token.text,)
-        elif token.kind is Kind.SIGN and token.text == "[":
+        elif token.kind is TokenKind.SIGN and token.text == "[":
             urls = self._texts()
         else:
             raise self._tokens.wrong(token, f"the URL of EXTERNPROTO {name[:40]}")
@@ -265,11 +269,11 @@ class _Parser:
     def _header(self, word: str) -> None:
         found = [self._tokens.next() for _ in range(_HEADER[word])]
         for token in found:
-            if token.kind in (Kind.SIGN, Kind.END):
+            if token.kind in (TokenKind.SIGN, TokenKind.END):
                 raise self._tokens.wrong(token, f"the rest of {word}")
         if word == "META":
             self._scene.meta.setdefault(found[0].text[:100], found[1].text[:1000])
-        if word == "UNIT" and found[2].kind is Kind.NUMBER and 1e-9 < float(found[2].text) < 1e9:
+        if word == "UNIT" and found[2].kind is TokenKind.NUMBER and 1e-9 < float(found[2].text) < 1e9:
             if found[0].text == "length":
                 self._scene.metre = float(found[2].text)
             if found[0].text == "angle":
@@ -277,4 +281,4 @@ class _Parser:
 
     def _next_is(self, word: str) -> bool:
         token = self._tokens.peek()
-        return token.kind is Kind.WORD and token.text == word
+        return token.kind is TokenKind.WORD and token.text == word

@@ -1,7 +1,7 @@
 """PROTOs, EXTERNPROTOs and Inlines put in place: a graph of plain nodes, of bounded size and depth."""
 
 from elbowroom.errors import InputError
-from elbowroom.formats.x3d.files import Library
+from elbowroom.formats.x3d.files import FilesBeside
 from elbowroom.formats.x3d.model import MAX_DEPTH, Interface, Is, Node, Nodes, Value, X3dScene
 
 MAX_NODES = 100_000
@@ -14,17 +14,17 @@ _Fields = dict[str, Value]
 _Seen = dict[int, Node]
 
 
-def expand(scene: X3dScene, library: Library) -> Nodes:
+def expand(scene: X3dScene, beside: FilesBeside) -> Nodes:
     """The roots of a scene with everything that stands for other nodes replaced by them.
 
     Nodes that the file shares (USE) are shared here too. Raises `InputError` when they become too many or too deep.
     """
-    return _Expander(library).nodes(scene.roots, None, {}, 0)
+    return _Expander(beside).nodes(scene.roots, None, {}, 0)
 
 
 class _Expander:
-    def __init__(self, library: Library) -> None:
-        self._library = library
+    def __init__(self, beside: FilesBeside) -> None:
+        self._beside = beside
         self._made = 0
 
     def nodes(self, nodes: Nodes, values: _Fields | None, seen: _Seen, depth: int) -> Nodes:
@@ -72,7 +72,7 @@ class _Expander:
 
     def _instance(self, node: Node, proto: Interface, values: _Fields | None, seen: _Seen, depth: int) -> Node | None:
         """The first node of a PROTO's body; those after it are not shown (ISO/IEC 19775-1, 4.4.4.3)."""
-        declared = proto if proto.urls is None else self._library.find_proto(proto, node)
+        declared = proto if proto.urls is None else self._beside.find_proto(proto, node)
         if declared is None or not declared.body:
             return None
         given = self._fields(node.fields, values, seen, depth + 1)
@@ -84,7 +84,7 @@ class _Expander:
 
     def _inline(self, node: Node, values: _Fields | None, depth: int) -> Node | None:
         asked = Node(node.kind, node.file, node.line, node.name, self._fields(node.fields, values, {}, depth))
-        scene = self._library.open(asked.strings("url"), asked)
+        scene = self._beside.open(asked.strings("url"), asked)
         if scene is None:
             return None
         group = Node("Group", node.file, node.line, node.name)

@@ -45,7 +45,7 @@ def unpacked(data: bytes, file: str) -> bytes:
     return data
 
 
-class Library:
+class FilesBeside:
     """The files beside a scene that it may take in; a node's `file` is its path below the scene's folder."""
 
     def __init__(self, folder: Path | None, notes: Notes) -> None:

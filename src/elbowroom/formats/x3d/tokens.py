@@ -29,7 +29,7 @@ _NAME_LETTER = re.compile(r"[G-WYZg-wyz_]")  # none of them is in a number, be i
 _NUMERIC = frozenset("+-.0123456789")
 
 
-class Kind(Enum):
+class TokenKind(Enum):
     """What a token is."""
 
     WORD = "a name"
@@ -42,7 +42,7 @@ class Kind(Enum):
 class Token(NamedTuple):
     """A word of the file; a text is given without its quotes."""
 
-    kind: Kind
+    kind: TokenKind
     text: str
     start: int  # where it begins in the file
 
@@ -67,7 +67,7 @@ class Tokens:
         """The error that says what stands at a token instead of what is wanted."""
         line = self.line(token.start)
         before = max(self._text.rfind("\n", 0, token.start), self._text.rfind("\r", 0, token.start))
-        found = token.kind.value if token.kind is Kind.END else repr(token.text[:40])
+        found = token.kind.value if token.kind is TokenKind.END else repr(token.text[:40])
         return InputError(f"{self._file}: line {line}, column {token.start - before}: {wanted} is needed, not {found}")
 
     def peek(self) -> Token:
@@ -85,14 +85,14 @@ class Tokens:
     def word(self, wanted: str) -> str:
         """A name, whatever characters it begins with."""
         token = self.next()
-        if token.kind not in (Kind.WORD, Kind.NUMBER):
+        if token.kind not in (TokenKind.WORD, TokenKind.NUMBER):
             raise self.wrong(token, wanted)
         return token.text
 
     def sign(self, sign: str, where: str) -> None:
         """A bracket."""
         token = self.next()
-        if token.kind is not Kind.SIGN or token.text != sign:
+        if token.kind is not TokenKind.SIGN or token.text != sign:
             raise self.wrong(token, f"{sign!r} {where}")
 
     def number_list(self) -> NDArray[np.float64] | None:
@@ -116,7 +116,7 @@ class Tokens:
     def numbers(self) -> NDArray[np.float64]:
         """The numbers that follow one another here."""
         found = []
-        while (token := self.peek()).kind is Kind.NUMBER:
+        while (token := self.peek()).kind is TokenKind.NUMBER:
             found.append(parse_number(token.text))
             self._ahead = None
         return np.array(found, dtype=np.float64)
@@ -133,10 +133,10 @@ class Tokens:
         text, start = match.group(group), match.start(group)
         self._at = match.end()
         if group == "text":
-            return Token(Kind.TEXT, unescaped(text[1:-1]), start)
+            return Token(TokenKind.TEXT, unescaped(text[1:-1]), start)
         if group == "word":
-            return Token(Kind.NUMBER if text[0] in _NUMERIC and _is_number(text) else Kind.WORD, text, start)
-        return Token(Kind.SIGN if group == "sign" else Kind.END, text, start)
+            return Token(TokenKind.NUMBER if text[0] in _NUMERIC and _is_number(text) else TokenKind.WORD, text, start)
+        return Token(TokenKind.SIGN if group == "sign" else TokenKind.END, text, start)
 
 
 def _is_number(text: str) -> bool:

@@ -115,7 +115,7 @@ class _Seen:
 
 
 @dataclass(frozen=True)
-class Patience:
+class ConnectionLimits:
     """How long a connection may do nothing, in seconds, and what may be open at once."""
 
     request: float = 10.0  # until a request's head is there
@@ -128,12 +128,12 @@ class Patience:
 class Doorman:
     """Looks at all connections now and then, and ends those that only take up a place. Time is an argument."""
 
-    def __init__(self, patience: Patience | None = None) -> None:
-        self._patience = patience or Patience()
+    def __init__(self, limits: ConnectionLimits | None = None) -> None:
+        self._limits = limits or ConnectionLimits()
         self._seen: WeakKeyDictionary[Any, _Seen] = WeakKeyDictionary()
 
     def look(self, connections: Iterable[Any], now: float) -> None:
-        """End the connections that have used up their patience; they are uvicorn's protocol objects."""
+        """End the connections that are beyond these limits; they are uvicorn's protocol objects."""
         idle = []
         for connection in list(connections):
             seen = self._noted(connection, now)
@@ -142,7 +142,7 @@ class Doorman:
             elif seen.asked < now:
                 idle.append((seen.asked, connection))
         idle.sort(key=lambda pair: pair[0])
-        for _, connection in idle[: -self._patience.idle]:
+        for _, connection in idle[: -self._limits.idle]:
             connection.transport.abort()
 
     def _noted(self, connection: Any, now: float) -> _Seen:
@@ -159,12 +159,12 @@ class Doorman:
         return seen
 
     def _has_waited(self, seen: _Seen, now: float) -> bool:
-        patience = self._patience
+        limits = self._limits
         return (
-            now - seen.moved > patience.reading
-            or now - seen.asked > patience.request
-            or now - seen.open > patience.closing
-            or seen.waiting > patience.unread
+            now - seen.moved > limits.reading
+            or now - seen.asked > limits.request
+            or now - seen.open > limits.closing
+            or seen.waiting > limits.unread
         )
 
 

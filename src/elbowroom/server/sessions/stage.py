@@ -20,7 +20,7 @@ from elbowroom.server.sessions.nearest import nearest
 from elbowroom.server.sessions.punctuality import Punctuality
 from elbowroom.server.sessions.reports import blocked_message, finite, group_reports, plan_message
 from elbowroom.server.sessions.walk import Walk
-from elbowroom.server.vmc.protocol import Moment
+from elbowroom.server.vmc.protocol import VmcMoment
 from elbowroom.server.wire import pose_frame
 from elbowroom.server.wire.pose_frame import PoseFrame
 
@@ -157,11 +157,11 @@ class Stage:
         self._stepping = 0.0
         return packed
 
-    def moment(self) -> Moment:
+    def moment(self) -> VmcMoment:
         """The pose shown now, for a puppet of the avatar elsewhere."""
         frame = self.walk.frame
         x, z, heading = frame.root[:3].tolist()
-        return Moment(frame.time, (x, float(frame.root[HEIGHT]), z), heading, self.walk.node_pose())
+        return VmcMoment(frame.time, (x, float(frame.root[HEIGHT]), z), heading, self.walk.node_pose())
 
     @property
     def restless(self) -> bool:

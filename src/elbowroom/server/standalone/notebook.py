@@ -10,7 +10,7 @@ from elbowroom.server.standalone.page import page_of_recording
 _SMALLEST, _LARGEST = 120, 4000  # pixels
 
 
-class ShownRun:
+class NotebookRun:
     """What `show` gives: a notebook draws it; elsewhere it can be saved."""
 
     def __init__(self, page: str, height: int, notes: tuple[str, ...]) -> None:
@@ -32,7 +32,7 @@ class ShownRun:
         return Path(path)
 
 
-def show(run: str | Path | Recording, avatar: str | Path | None = None, height: int = 480) -> ShownRun:
+def show(run: str | Path | Recording, avatar: str | Path | None = None, height: int = 480) -> NotebookRun:
     """A recording (`.elbow`), to be shown at the end of a notebook's cell, offline.
 
     `avatar` is the file of the avatar, where it is not the stock one; `height` is in pixels. Raises `InputError`.
@@ -42,4 +42,4 @@ def show(run: str | Path | Recording, avatar: str | Path | None = None, height: 
     recording = run if isinstance(run, Recording) else Recording(run)
     humanoid = recording.header.avatar.load(None if avatar is None else Path(avatar))
     page, notes = page_of_recording(recording, humanoid, recording.path.name)
-    return ShownRun(page, height, notes)
+    return NotebookRun(page, height, notes)

@@ -31,7 +31,7 @@ Floats32 = NDArray[np.float32]
 _LENGTH = struct.Struct("<I")
 
 
-class Run(NamedTuple):
+class PackedRun(NamedTuple):
     """What is to be played."""
 
     head: dict[str, Any]  # `name`, `planner`, `note`, and `scene` and `avatar` as a client is told of them
@@ -55,7 +55,7 @@ def read_run(data: bytes) -> tuple[dict[str, Any], bytes]:
     return head, frames
 
 
-def pack_run(run: Run) -> bytes:
+def pack_run(run: PackedRun) -> bytes:
     """Pack it; raises `InputError` where the frames are damaged."""
     frames = _few(_parsed(run.frames))
     roots = np.array([[f.x, f.y, f.z] for f in frames], np.float32)
@@ -87,7 +87,7 @@ def _columns(values: NDArray[np.float32], unit: float) -> bytes:
     return ((steps + 2**15) % 2**16 - 2**15).astype("<i2").tobytes()
 
 
-def _rotations(run: Run, frames: list[PoseFrame]) -> Floats32:
+def _rotations(run: PackedRun, frames: list[PoseFrame]) -> Floats32:
     """(N, J, 4)"""
     bones = len(run.head["avatar"].get("bones", ()))
     if any(len(frame.rotations) != bones for frame in frames):
@@ -95,7 +95,7 @@ def _rotations(run: Run, frames: list[PoseFrame]) -> Floats32:
     return np.array([frame.rotations for frame in frames])
 
 
-def _capsules(run: Run, frames: list[PoseFrame], roots: Floats32) -> Floats32:
+def _capsules(run: PackedRun, frames: list[PoseFrame], roots: Floats32) -> Floats32:
     """(N, C, 6) about the root; none where there is a mesh."""
     if run.glb is not None:
         return np.empty((len(frames), 0, 6), np.float32)

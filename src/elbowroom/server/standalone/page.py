@@ -12,7 +12,7 @@ from elbowroom.control.recordings.recording import Recording
 from elbowroom.errors import InputError
 from elbowroom.server.sessions.reports import avatar_message, scene_message
 from elbowroom.server.standalone.frames import posed_frames
-from elbowroom.server.standalone.packed_run import Run, pack_run, read_run
+from elbowroom.server.standalone.packed_run import PackedRun, pack_run, read_run
 from elbowroom.server.stores.avatar_store import StoredAvatar
 from elbowroom.server.wire.codec import plain
 
@@ -63,7 +63,7 @@ def page_of_recording(recording: Recording, humanoid: Humanoid, name: str) -> Pa
         "avatar": plain(avatar_message(stored, 0)),
         "note": recording.note or "",
     }
-    return _page(Run(head, b"".join(posed_frames(recording, humanoid)), glb), notes)
+    return _page(PackedRun(head, b"".join(posed_frames(recording, humanoid)), glb), notes)
 
 
 def page_of_sent(data: bytes, avatar: StoredAvatar) -> Page:
@@ -72,7 +72,7 @@ def page_of_sent(data: bytes, avatar: StoredAvatar) -> Page:
     glb, notes = _embedded(avatar)
     if head["scene"].get("model"):
         notes = (*notes, "the model of the place is left out")
-    return _page(Run({**head, "avatar": plain(avatar_message(avatar, 0))}, frames, glb), notes)
+    return _page(PackedRun({**head, "avatar": plain(avatar_message(avatar, 0))}, frames, glb), notes)
 
 
 def _embedded(avatar: StoredAvatar) -> tuple[bytes | None, tuple[str, ...]]:
@@ -89,7 +89,7 @@ def _embedded(avatar: StoredAvatar) -> tuple[bytes | None, tuple[str, ...]]:
     return glb, ()
 
 
-def _page(run: Run, notes: tuple[str, ...]) -> Page:
+def _page(run: PackedRun, notes: tuple[str, ...]) -> Page:
     scene = {**run.head["scene"], "model": None}
     avatar = {**run.head["avatar"], "url": None, "drawCapsules": run.glb is None}
     packed = pack_run(run._replace(head={**run.head, "scene": scene, "avatar": avatar}))

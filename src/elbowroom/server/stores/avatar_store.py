@@ -15,7 +15,7 @@ from elbowroom.body.loading.settings import LoadSettings
 from elbowroom.errors import InputError
 from elbowroom.server.entrance.page_key import Sender
 from elbowroom.server.schema.menus import AvatarChoice
-from elbowroom.server.stores.recent import RecentlySent, Room
+from elbowroom.server.stores.recent import Capacity, RecentlySent
 from elbowroom.server.wire.pose import Poser
 
 STOCK = "stock"
@@ -54,7 +54,7 @@ class AvatarStore:
         self._folder = tempfile.TemporaryDirectory(prefix="elbowroom-avatars-", ignore_cleanup_errors=True)
         self._lock = threading.Lock()
         self._kept: dict[str, StoredAvatar] = {}
-        self._uploads = RecentlySent[StoredAvatar](lambda: Room(MAX_UPLOADS, MAX_EACH, MAX_UPLOADED), _remove)
+        self._uploads = RecentlySent[StoredAvatar](lambda: Capacity(MAX_UPLOADS, MAX_EACH, MAX_UPLOADED), _remove)
 
     @property
     def folder(self) -> Path:

@@ -13,7 +13,7 @@ from elbowroom.server.apart.jobs import MAX_CLIPS
 from elbowroom.server.apart.process import run_apart
 from elbowroom.server.entrance.page_key import Sender
 from elbowroom.server.schema.menus import ClipChoice
-from elbowroom.server.stores.recent import RecentlySent, Room
+from elbowroom.server.stores.recent import Capacity, RecentlySent
 
 MAX_FILES = 8  # dropped on the page; the one that was used least recently goes first, what a session shows stays
 MAX_EACH = 4  # of one machine that is not this one
@@ -63,8 +63,8 @@ class ClipStore:
     def __init__(self) -> None:
         self._lock = threading.Lock()
         self._kept: dict[str, StoredClip] = {}
-        room = Room(MAX_FILES, MAX_EACH, MAX_UPLOADED)
-        self._uploads = RecentlySent[tuple[SentMotions, list[StoredClip]]](lambda: room, _remove)
+        capacity = Capacity(MAX_FILES, MAX_EACH, MAX_UPLOADED)
+        self._uploads = RecentlySent[tuple[SentMotions, list[StoredClip]]](lambda: capacity, _remove)
 
     def choices(self, owner: str = "") -> list[ClipChoice]:
         """What the menu offers to the page with this key."""

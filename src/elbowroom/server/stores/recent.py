@@ -12,7 +12,7 @@ Item = TypeVar("Item")
 
 
 @dataclass(frozen=True)
-class Room:
+class Capacity:
     """How much there is place for."""
 
     most: int  # things in all
@@ -30,9 +30,9 @@ class _Sent(Generic[Item]):
 class RecentlySent(Generic[Item]):
     """Things by id; may be used from several threads. What a user holds stays."""
 
-    def __init__(self, room: Callable[[], Room], gone: Callable[[Item], object]) -> None:
+    def __init__(self, capacity: Callable[[], Capacity], gone: Callable[[Item], object]) -> None:
         """`gone` is called with each thing that had to go."""
-        self._room, self._gone = room, gone
+        self._capacity, self._gone = capacity, gone
         self._lock = threading.Lock()
         self._sent: OrderedDict[str, _Sent[Item]] = OrderedDict()  # the one used least recently first
         self._held: dict[Hashable, frozenset[str]] = {}
@@ -69,17 +69,17 @@ class RecentlySent(Generic[Item]):
 
     def _leaving(self, new: _Sent[Item]) -> list[str]:
         """Who has to go for a new thing: the sender's own first."""
-        room, held = self._room(), frozenset[str]().union(*self._held.values())
-        if new.size > room.size:
+        capacity, held = self._capacity(), frozenset[str]().union(*self._held.values())
+        if new.size > capacity.size:
             raise InputError(
-                f"what was sent takes {new.size >> 20} MiB here; there are {room.size >> 20} for all files"
+                f"what was sent takes {new.size >> 20} MiB here; there are {capacity.size >> 20} for all files"
             )
         staying = dict(self._sent)
         leaving: list[str] = []
         while True:
-            full = len(staying) >= room.most or sum(s.size for s in staying.values()) + new.size > room.size
+            full = len(staying) >= capacity.most or sum(s.size for s in staying.values()) + new.size > capacity.size
             own = [known for known, sent in staying.items() if new.sender and sent.sender == new.sender]
-            if not staying or not (full or len(own) >= room.each):
+            if not staying or not (full or len(own) >= capacity.each):
                 return leaving
             free = next((known for known in [*own, *(staying if full else ())] if known not in held), None)
             if free is None:

@@ -10,7 +10,7 @@ from pathlib import Path
 from elbowroom.errors import InputError
 from elbowroom.server.entrance.page_key import Sender
 from elbowroom.server.stores.place_files import PlaceFiles
-from elbowroom.server.stores.recent import RecentlySent, Room
+from elbowroom.server.stores.recent import Capacity, RecentlySent
 from elbowroom.server.stores.scene_weight import weight_of
 from elbowroom.world.scene import Scene
 
@@ -30,7 +30,7 @@ class SentScenes:
     def __init__(self, places: PlaceFiles) -> None:
         """`places` keeps the files that models of places are shown with."""
         self._places = places
-        self._kept = RecentlySent[Scene](lambda: Room(MOST, MOST_EACH, MOST_BYTES), places.forget)
+        self._kept = RecentlySent[Scene](lambda: Capacity(MOST, MOST_EACH, MOST_BYTES), places.forget)
 
     def add_place(self, scene: Scene, glb: Path, sender: Sender = _NOBODY) -> Scene:
         """The scene of a place, under its name here; `glb` is what it is shown with, and goes with it.

@@ -54,7 +54,7 @@ class Puppet:
 
 
 @dataclass(frozen=True, eq=False)
-class Moment:
+class VmcMoment:
     """What is shown at one time."""
 
     time: float  # seconds
@@ -63,7 +63,7 @@ class Moment:
     pose: NodePose  # in the root's frame
 
 
-def messages(puppet: Puppet, moment: Moment, locomotion: Locomotion = Locomotion.ROOT) -> Iterator[Message]:
+def messages(puppet: Puppet, moment: VmcMoment, locomotion: Locomotion = Locomotion.ROOT) -> Iterator[Message]:
     """All messages of one frame: state, time, root, every bone with its place, and blinking."""
     yield "/VMC/Ext/OK", (_LOADED, _CALIBRATED, _NORMAL_MODE)
     yield "/VMC/Ext/T", (float(moment.time),)

@@ -10,7 +10,7 @@ from pythonosc.osc_message_builder import OscMessageBuilder
 
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.errors import InputError
-from elbowroom.server.vmc.protocol import Message, Moment, Puppet, messages
+from elbowroom.server.vmc.protocol import Message, Puppet, VmcMoment, messages
 from elbowroom.server.vmc.settings import VmcSettings
 
 _FITS = 1400  # bytes: a bundle of so many goes through any network in one piece
@@ -33,7 +33,7 @@ class VmcStream:
         self._socket = socket.socket(found[0], socket.SOCK_DGRAM)
         self._socket.setblocking(False)
 
-    def show(self, holder: object, humanoid: Humanoid, moment: Moment) -> bool:
+    def show(self, holder: object, humanoid: Humanoid, moment: VmcMoment) -> bool:
         """Send one frame, if nobody else holds the stream; whether that is so.
 
         A receiver that is not there, or too slow, misses frames; nobody waits for it.

@@ -30,7 +30,7 @@ _SMALLEST, _LARGEST = 1.0, 1000.0  # metres a place is wide
 
 
 @dataclass(frozen=True, eq=False)
-class Stance:
+class ModelAxes:
     """How a model is stood up."""
 
     up: str
@@ -40,9 +40,9 @@ class Stance:
     notes: tuple[str, ...]
 
 
-def stance_of(
+def axes_of(
     vertices: Floats, faces: Ints, kind: ModelKind, options: PlaceOptions, said: Said | None = None
-) -> Stance:
+) -> ModelAxes:
     """Stand a model up: vertices (V, 3) in the file's axes and units, faces (F, 3); `said` is what the file says."""
     up, why_up = _up_of(vertices, faces, kind, options, said)
     turn = np.array(_TURNS[up], np.float64)
@@ -52,7 +52,7 @@ def stance_of(
     notes: tuple[str, ...] = ()
     if not _SMALLEST <= wide <= _LARGEST:
         notes = (f"it is {wide:.3g} m wide, which is odd for a place: tell its unit with --scale",)
-    return Stance(up, metre, turn, (why_up, why_metre), notes)
+    return ModelAxes(up, metre, turn, (why_up, why_metre), notes)
 
 
 def _up_of(vertices: Floats, faces: Ints, kind: ModelKind, options: PlaceOptions, said: Said | None) -> tuple[str, str]:

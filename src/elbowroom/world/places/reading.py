@@ -14,7 +14,7 @@ from elbowroom.formats.hidden_nodes import hidden_nodes
 from elbowroom.formats.models.model import Model, parse_model, read_model
 from elbowroom.formats.nodes import NodeTree, read_nodes
 from elbowroom.formats.triangles import MeshBounds, TriangleMesh, triangle_parts
-from elbowroom.world.places.axes import Stance, stance_of
+from elbowroom.world.places.axes import ModelAxes, axes_of
 from elbowroom.world.places.options import PlaceOptions
 from elbowroom.world.places.place import Part, Place
 
@@ -59,9 +59,9 @@ def _place(model: Model, name: str, options: PlaceOptions, progress: Progress) -
     shown = list(_shown(model, tree, dropped, name, progress))
     if not shown:
         raise InputError(f"{name}: {_EMPTY}" + (", or all are dropped" if dropped else ""))
-    stance = _stance(shown, model, options)
+    axes = _axes(shown, model, options)
     to_metres = np.eye(4)
-    to_metres[:3, :3] = stance.metre * stance.turn
+    to_metres[:3, :3] = axes.metre * axes.turn
     parts = tuple(
         Part(names[node], node, points @ to_metres[:3, :3].T, faces, node not in passable)
         for node, points, faces in shown
@@ -73,10 +73,10 @@ def _place(model: Model, name: str, options: PlaceOptions, progress: Progress) -
         options=options,
         parts=parts,
         to_metres=to_metres,
-        metre=stance.metre,
-        up=stance.up,
-        told=stance.told,
-        notes=(*model.notes, *notes, *stance.notes),
+        metre=axes.metre,
+        up=axes.up,
+        told=axes.told,
+        notes=(*model.notes, *notes, *axes.notes),
         dropped=dropped,
     )
     _refuse_too_large(found)
@@ -117,11 +117,11 @@ def _placed(mesh: TriangleMesh, matrices: Floats) -> Floats:
     return points
 
 
-def _stance(shown: list[tuple[int, Floats, NDArray[np.int64]]], model: Model, options: PlaceOptions) -> Stance:
+def _axes(shown: list[tuple[int, Floats, NDArray[np.int64]]], model: Model, options: PlaceOptions) -> ModelAxes:
     starts = np.cumsum([0, *(len(points) for _, points, _ in shown[:-1])])
     vertices = np.concatenate([points for _, points, _ in shown])
     faces = np.concatenate([faces + start for (_, _, faces), start in zip(shown, starts, strict=True)])
-    return stance_of(vertices, faces, model.kind, options, model.said)
+    return axes_of(vertices, faces, model.kind, options, model.said)
 
 
 def _names(tree: NodeTree) -> tuple[str, ...]:

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.formats.glb_draft import GlbDraft
-from elbowroom.formats.x3d.files import Library
+from elbowroom.formats.x3d.files import FilesBeside
 from elbowroom.formats.x3d.model import Node, Notes
 from elbowroom.formats.x3d.pictures import mime_of, pixel_texture
 
@@ -18,11 +18,11 @@ _WHITE = (1.0, 1.0, 1.0)
 _REPEAT, _CLAMP = 10497, 33071
 
 
-class Looks:
+class Materials:
     """Makes one glTF material for each Appearance and way of use."""
 
-    def __init__(self, draft: GlbDraft, library: Library, notes: Notes) -> None:
-        self._draft, self._library, self._notes = draft, library, notes
+    def __init__(self, draft: GlbDraft, beside: FilesBeside, notes: Notes) -> None:
+        self._draft, self._beside, self._notes = draft, beside, notes
         self._made: dict[tuple[int, bool, bool, bool], int] = {}
         self._textures: dict[int, int | None] = {}
 
@@ -70,7 +70,7 @@ class Looks:
         if node.kind == "PixelTexture":
             data = pixel_texture(node)
         elif node.kind == "ImageTexture":
-            data = self._library.picture(node.strings("url"), node)
+            data = self._beside.picture(node.strings("url"), node)
         else:
             self._notes.add(f"{node.place} is left out: only ImageTexture and PixelTexture are shown")
             return None

@@ -30,7 +30,7 @@ _ANKLE = 0.045  # of the leg: how high the ankle joint is above the sole, where 
 
 
 @dataclass(frozen=True, eq=False)
-class Figure:
+class TakeFigure:
     """The humanoid of a take, T-posed: metres, Y up, facing +Z."""
 
     bones: dict[str, int]  # VRM 1.0 name -> node, parents first
@@ -65,7 +65,7 @@ class Figure:
 
 def figure_of(
     take: Take, bones: dict[str, int], told: Told, place: str, *, t_posed: bool = False, metric: bool = False
-) -> Figure:
+) -> TakeFigure:
     """The figure behind a take; `bones` in canonical order.
 
     `t_posed`: the rest pose is the T-pose by the format's rule. `metric`: the format counts in metres with Y up (glTF).
@@ -85,7 +85,7 @@ def figure_of(
     else:
         upright = quaternion.between(_axis(told.up.lower() if told.up else _up_axis(take, bones)), [0.0, 1.0, 0.0])
     ground = np.array([0.0, floor, 0.0])
-    return Figure(
+    return TakeFigure(
         bones=bones,
         turns=tree.world_rotations(rotations)[nodes],
         positions=unit * (positions[nodes] - ground),
