@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 import ray
 
 from elbowroom.errors import InputError
-from elbowroom.experiment.opened import Thing, opened
+from elbowroom.experiment.opened import Openable, opened
 
 
 class Answer(NamedTuple):
@@ -42,7 +42,7 @@ class Square:
     file: Path | None = None  # its bytes are added up as well
 
     @property
-    def things(self) -> tuple[Thing[Any], ...]:
+    def things(self) -> tuple[Openable[Any], ...]:
         """The file."""
         return () if self.file is None else (FilesBytes(self.file),)
 
@@ -60,7 +60,7 @@ class Death:
     """Ends its worker: always, or until it has done so once."""
 
     mark: Path | None = None
-    things: tuple[Thing[Any], ...] = ()
+    things: tuple[Openable[Any], ...] = ()
 
     def run(self) -> str:
         """Dies, or says that it lives."""

@@ -13,7 +13,7 @@ from elbowroom.experiment.judge.capsule_shapes import CapsuleShapes
 from elbowroom.experiment.judge.motion import ShownMotion
 from elbowroom.experiment.judge.poses import Poser
 from elbowroom.experiment.judge.settings import JudgeSettings
-from elbowroom.experiment.judge.soles import Soles
+from elbowroom.experiment.judge.soles import RaisedSoles
 from elbowroom.experiment.judge.verdict import judge
 from elbowroom.world.scene import Scene
 from shown_between import shown_ends
@@ -137,7 +137,7 @@ def test_a_foot_that_leaves_the_ground_is_held_no_higher_than_the_judge_has_it()
     q[:, :3] = rows[:, :3]
     motion, poser = ShownMotion.at_rate(q, rows), Poser(AVATAR)
     moments = motion.moments(60.0 * (len(SHARES) - 1))
-    raised = Soles(AVATAR, poser, motion, floors=True).raised(poser.at(motion, moments), moments)
+    raised = RaisedSoles(AVATAR, poser, motion, floors=True).raised(poser.at(motion, moments), moments)
     placed = CapsuleShapes(AVATAR).placed(raised)
     judged_lowest = (placed.middles[..., 1] - np.abs(placed.half_axes[..., 1])).T - body.radii[:, None]
     frames = Frames((rows[0], rows[1]), (np.zeros(LOCAL), np.zeros(LOCAL)), (0.0, 1 / 60))

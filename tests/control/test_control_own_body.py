@@ -17,7 +17,7 @@ from elbowroom.control.settings import ControlSettings
 from elbowroom.control.shown.body_check import BodyCheck, Frames
 from elbowroom.control.shown.own_body_check import own_body_check
 from elbowroom.control.shown.showing import Showing
-from elbowroom.dataset.draw import Draw
+from elbowroom.dataset.draw import DrawnWalk
 from elbowroom.dataset.spec import DatasetSpec
 from elbowroom.dataset.walk import company_on, controller_of, setting_of, steps_of
 from elbowroom.experiment.judge.motion import ShownMotion
@@ -39,8 +39,8 @@ BEND, LOWERED = columns_of(DofGroup.WAIST).start, LOWERING - DofGroup.ROOT.size
 # Walks of a dataset in which parts of the body were deeper in each other than they may: a hand in a thigh that comes
 # by, and the belly in a thigh of who goes aside in a crouch.
 WALKS = [
-    Draw("d", "stock", "strafing", 508671556, "stock", ()),
-    Draw("c", "stock", "strafing", 1990636894, "style:old", ()),
+    DrawnWalk("d", "stock", "strafing", 508671556, "stock", ()),
+    DrawnWalk("c", "stock", "strafing", 1990636894, "style:old", ()),
 ]
 
 

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from elbowroom.control.others.neighbour import Neighbour, Walker
 from elbowroom.control.others.passing import expected, way_made
 from elbowroom.experiment.meeting.meeting import Start, corridor, drawn, meet
-from elbowroom.experiment.meeting.settings import WIDTHS, Kind
+from elbowroom.experiment.meeting.settings import WIDTHS, MeetingKind
 from elbowroom.world.obstacles.tracks.moving import Moving
 
 Floats = NDArray[np.float64]
@@ -39,15 +39,15 @@ def test_who_stands_is_passed_and_not_driven_back(width: float) -> None:
 
 @pytest.mark.long
 @pytest.mark.parametrize("width", WIDTHS)
-@pytest.mark.parametrize("kind", list(Kind))
-def test_wherever_two_meet_they_share_the_way(width: float, kind: Kind) -> None:
+@pytest.mark.parametrize("kind", list(MeetingKind))
+def test_wherever_two_meet_they_share_the_way(width: float, kind: MeetingKind) -> None:
     assert [met.start for seed in range(20) if not (met := meet(drawn(width, kind, seed))).well] == []
 
 
 @pytest.mark.long
 def test_who_stand_in_each_others_way_do_not_touch() -> None:
     """There is no room for two: both are at a loss, and then each shows something else than it said."""
-    met = meet(drawn(0.86, Kind.WALKS, 3))
+    met = meet(drawn(0.86, MeetingKind.WALKS, 3))
     assert not met.passed
     assert not met.touched
 

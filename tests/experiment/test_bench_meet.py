@@ -8,7 +8,7 @@ import pytest
 from elbowroom.errors import InputError
 from elbowroom.experiment.meeting.meeting import STEP, Met, Start, drawn
 from elbowroom.experiment.meeting.meetings import MeetingTask, as_dict, meeting_tasks, run_meetings
-from elbowroom.experiment.meeting.settings import Kind, MeetingSettings
+from elbowroom.experiment.meeting.settings import MeetingKind, MeetingSettings
 
 
 class Told:
@@ -26,12 +26,12 @@ class Told:
 
 def test_a_seed_draws_the_same_start_within_the_corridor() -> None:
     for seed in range(50):
-        start = drawn(0.95, Kind.WALKS, seed)
-        assert start == drawn(0.95, Kind.WALKS, seed)
+        start = drawn(0.95, MeetingKind.WALKS, seed)
+        assert start == drawn(0.95, MeetingKind.WALKS, seed)
         assert all(abs(left) < 0.475 - 0.3 for left in start.left)
         assert min(start.paces) >= 0.6
-        assert drawn(0.95, Kind.STANDS, seed).paces[1] == 0.0
-    assert len({drawn(0.95, Kind.WALKS, seed) for seed in range(50)}) == 50
+        assert drawn(0.95, MeetingKind.STANDS, seed).paces[1] == 0.0
+    assert len({drawn(0.95, MeetingKind.WALKS, seed) for seed in range(50)}) == 50
 
 
 def test_corridors_are_told_one_by_one_with_the_starts_that_failed() -> None:
@@ -55,17 +55,17 @@ def test_corridors_are_told_one_by_one_with_the_starts_that_failed() -> None:
 
 @pytest.mark.long
 def test_a_meeting_of_its_own_process_is_the_same() -> None:
-    start = drawn(1.6, Kind.STANDS, 3)._replace(apart=1.5)
-    met = MeetingTask(Kind.STANDS, start).run()
+    start = drawn(1.6, MeetingKind.STANDS, 3)._replace(apart=1.5)
+    met = MeetingTask(MeetingKind.STANDS, start).run()
     assert met.well
-    again = MeetingTask(Kind.STANDS, start).run()
+    again = MeetingTask(MeetingKind.STANDS, start).run()
     assert met._replace(frame_ms=0.0, late=0) == again._replace(frame_ms=0.0, late=0)
 
 
 @pytest.mark.long
 def test_two_whose_plans_come_late_meet_as_well() -> None:
-    start = drawn(1.6, Kind.STANDS, 3)._replace(apart=1.5)
-    assert MeetingTask(Kind.STANDS, start, live=True).run().well
+    start = drawn(1.6, MeetingKind.STANDS, 3)._replace(apart=1.5)
+    assert MeetingTask(MeetingKind.STANDS, start, live=True).run().well
 
 
 @pytest.mark.parametrize(

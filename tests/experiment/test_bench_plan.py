@@ -11,7 +11,7 @@ from typer.testing import CliRunner
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.cli.main import app
 from elbowroom.errors import InputError
-from elbowroom.experiment.bench.plan import CallCosts, PlanReport, amount, lane
+from elbowroom.experiment.bench.plan import CallCosts, PlanCallsReport, amount, lane
 from elbowroom.experiment.bench.plan_calls import crossing_calls
 from elbowroom.experiment.bench.plots import growth_plots
 from elbowroom.experiment.bench.settings import PlanSettings
@@ -46,7 +46,7 @@ def test_lane_has_its_posts_beside_the_way() -> None:
 def test_plots_are_svg_documents() -> None:
     costs = CallCosts(3, 2, 0.2, 0.4, 0.5, 0.2, 0.6, 0.3, 100.0, 300, 1.0)
     settings = PlanSettings(rounds=5, horizons=(4, 8), obstacles=(0, 8))
-    for picture in growth_plots(PlanReport(settings, costs, costs, (costs,) * 2, (costs,) * 2)).values():
+    for picture in growth_plots(PlanCallsReport(settings, costs, costs, (costs,) * 2, (costs,) * 2)).values():
         assert ET.fromstring(picture).tag == "{http://www.w3.org/2000/svg}svg"
     assert costs.worst_to_median_checks == 3.0
     assert amount(settings) == 29

@@ -12,9 +12,9 @@ from elbowroom.errors import InputError
 from elbowroom.experiment.gauntlet.course import CourseMaker, make_course
 from elbowroom.experiment.gauntlet.draw import Draw
 from elbowroom.experiment.gauntlet.levels import BEND_TWIST, LEVELS
-from elbowroom.experiment.gauntlet.line import CourseLine, Turn, steady_walk
+from elbowroom.experiment.gauntlet.line import CourseLine, LineTurn, steady_walk
 from elbowroom.experiment.gauntlet.names import LARGEST_SEED
-from elbowroom.experiment.gauntlet.placing import Placed
+from elbowroom.experiment.gauntlet.placing import PlacedBox
 from elbowroom.world.scene import Scene
 from gauntlet_courses import SAMPLE, course, stock
 from odd_bodies import Body, box_body, ring_body
@@ -133,12 +133,12 @@ def test_an_obstacle_is_the_same_in_the_generator_and_in_the_scene() -> None:
         document = course(1, 0).scene.to_dict()
         document["obstacles"] = [{"type": "box", "center": [9.0, 1.0, 9.0], "size": list(size), "euler": list(turn)}]
         row = Scene.from_dict(document).obstacles.standing.rows[0, :15]
-        placed = Placed("box", (9.0, 1.0, 9.0), turn, size)
+        placed = PlacedBox("box", (9.0, 1.0, 9.0), turn, size)
         assert np.allclose(placed.row(), row, atol=1e-12)
 
 
 def test_a_line_is_the_integral_of_its_heading() -> None:
-    line = CourseLine(8.0, (Turn(1.0, 3.0, 0.4), Turn(4.0, 6.5, -0.5)))
+    line = CourseLine(8.0, (LineTurn(1.0, 3.0, 0.4), LineTurn(4.0, 6.5, -0.5)))
     way = np.linspace(0.0, 8.0, 4001)
     points, heading = line.points(way), line.heading(way)
     steps = np.diff(points, axis=0) / np.diff(way)[:, None]
@@ -157,7 +157,7 @@ def left_of(line: CourseLine, way: float) -> np.ndarray:
 
 
 def test_a_walk_moves_as_its_states_say() -> None:
-    walk = steady_walk(CourseLine(6.0, (Turn(1.0, 3.0, 0.4),)), 0.9, 240.0)
+    walk = steady_walk(CourseLine(6.0, (LineTurn(1.0, 3.0, 0.4),)), 0.9, 240.0)
     velocity = np.gradient(walk.states[:, :2], walk.times, axis=0)
     heading = walk.states[:, 2]
     ahead = walk.states[:, 3, None] * np.stack([np.sin(heading), np.cos(heading)], axis=1)

@@ -5,7 +5,7 @@ import numpy as np
 
 from elbowroom.body.dof import LOCAL
 from elbowroom.experiment.gauntlet.body_rows import BodyRows, joined, rows_of
-from elbowroom.experiment.gauntlet.placing import Keepout, Placed, pushed
+from elbowroom.experiment.gauntlet.placing import Keepout, PlacedBox, pushed
 from gauntlet_courses import stock
 
 
@@ -13,7 +13,7 @@ def test_gaps_equal_those_of_coal() -> None:
     rng = np.random.default_rng(0)
     for _ in range(300):
         turn, size = tuple(rng.uniform(-3, 3, 3).tolist()), tuple(rng.uniform(0.05, 1.5, 3).tolist())
-        placed = Placed("box", tuple(rng.uniform(-0.5, 0.5, 3).tolist()), turn, size)
+        placed = PlacedBox("box", tuple(rng.uniform(-0.5, 0.5, 3).tolist()), turn, size)
         axes, radii = rng.uniform(-1.5, 1.5, (4, 6)), rng.uniform(0.01, 0.2, 4)
         gap = BodyRows(axes, radii, np.zeros(4)).gap(placed.row())
         wanted = min(coal_gap(axis, radius, placed.row()) for axis, radius in zip(axes, radii, strict=True))
@@ -29,7 +29,7 @@ def test_of_many_rows_the_gap_is_that_of_the_nearest() -> None:
     alone = [BodyRows(rows.axes[i : i + 1], rows.radii[i : i + 1], rows.way[i : i + 1]) for i in range(400)]
     for _ in range(50):
         turn, size = tuple(rng.uniform(-3, 3, 3).tolist()), tuple(rng.uniform(0.05, 1.5, 3).tolist())
-        box = Placed("box", tuple(rng.uniform(-3.0, 3.0, 3).tolist()), turn, size).row()
+        box = PlacedBox("box", tuple(rng.uniform(-3.0, 3.0, 3).tolist()), turn, size).row()
         assert rows.gap(box) == min(row.gap(box) for row in alone)
 
 
@@ -44,7 +44,7 @@ def test_a_box_is_pushed_as_far_as_it_has_slack() -> None:
         direction = rng.normal(size=3)
         push, most = direction / np.linalg.norm(direction), float(rng.uniform(1.0, 4.0))
         turn, size = tuple(rng.uniform(-3, 3, 3).tolist()), tuple(rng.uniform(0.05, 0.5, 3).tolist())
-        box = Placed("box", tuple((-3.0 * push + 0.3 * rng.normal(size=3)).tolist()), turn, size).row()
+        box = PlacedBox("box", tuple((-3.0 * push + 0.3 * rng.normal(size=3)).tolist()), turn, size).row()
         assert pushed(keepout, box, push, 0.0, most) == plainly_pushed(rows, others, box, push, most)
 
 
@@ -85,7 +85,7 @@ def test_rows_keep_what_capsules_are() -> None:
     part = joined(rows, rows).between(1.0, 2.0)
     assert len(part.way) == 12
     assert len(part.every(5).radii) == 3
-    assert rows.between(9.0, 10.0).gap(Placed("box", (0, 0, 0), (0, 0, 0), (1, 1, 1)).row()) == np.inf
+    assert rows.between(9.0, 10.0).gap(PlacedBox("box", (0, 0, 0), (0, 0, 0), (1, 1, 1)).row()) == np.inf
 
 
 def test_a_hand_in_the_chest_and_hands_in_each_other_are_seen() -> None:

@@ -5,7 +5,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-from elbowroom.experiment.judge.smoothness import smoothness
 
 from elbowroom.body.dof import DOF
 from elbowroom.body.fitting.proportions import proportional_humanoid
@@ -13,6 +12,7 @@ from elbowroom.body.root import ROOT_STATE
 from elbowroom.control.controller import Controller
 from elbowroom.control.recordings.recording import ASSIST, RESTART, Recorder, Recording, RecordingHeader
 from elbowroom.errors import InputError
+from elbowroom.experiment.judge.derivatives import derivatives
 from elbowroom.experiment.judge.motion import ShownMotion
 from elbowroom.experiment.judge.settings import JudgeSettings
 from elbowroom.experiment.judge.verdict import Verdict, judge_recording
@@ -107,13 +107,13 @@ def test_a_wrong_rate_is_refused() -> None:
             JudgeSettings(rate=rate)
 
 
-def test_smoothness_of_a_sine() -> None:
+def test_derivatives_of_a_sine() -> None:
     """q = A sin(w t) has the extremes A w, A w^2, A w^3."""
     times, amplitude, omega = np.arange(600) / 60, 0.4, 3.0
     q, roots = np.zeros((600, DOF)), np.zeros((600, ROOT_STATE))
     q[:, 7] = amplitude * np.sin(omega * times)
     roots[:, 0] = 0.5 * times**2
-    figures = smoothness(ShownMotion.at_rate(q, roots))
+    figures = derivatives(ShownMotion.at_rate(q, roots))
     arm = figures["leftArm"]
     for extent, order in ((arm.speed, 1), (arm.acceleration, 2), (arm.jerk, 3)):
         assert extent.max == pytest.approx(amplitude * omega**order, rel=1e-2)
@@ -123,10 +123,10 @@ def test_smoothness_of_a_sine() -> None:
     assert figures["root"].speed.max == pytest.approx(9.975, rel=1e-3)
 
 
-def test_smoothness_stops_at_a_jump() -> None:
+def test_derivatives_stop_at_a_jump() -> None:
     q, roots = gliding(T_POSE, 10, speed=1.0)
     roots[5:, 1] += 7.0
     jumps = np.isin(np.arange(10), (0, 5))
-    figures = smoothness(ShownMotion(np.arange(10) / 60, q, roots, jumps, np.ones(10, bool)))
+    figures = derivatives(ShownMotion(np.arange(10) / 60, q, roots, jumps, np.ones(10, bool)))
     assert figures["root"].speed.max == pytest.approx(1.0)
     assert figures["root"].jerk.max == pytest.approx(0.0, abs=1e-6)

@@ -9,7 +9,7 @@ from elbowroom.control.frame import Frame
 from elbowroom.control.plans.desk import Job
 from elbowroom.experiment.meeting import meeting
 from elbowroom.experiment.meeting.meeting import drawn, meet
-from elbowroom.experiment.meeting.settings import Kind
+from elbowroom.experiment.meeting.settings import MeetingKind
 from late_desk import LateDesk
 from noted_kernels import note_kernels
 from sampled import sampled
@@ -68,15 +68,15 @@ class Apart(LateDesk):
     ("kind", "width", "seed", "seconds"),
     sampled(
         [
-            (Kind.WALKS, 1.2, 0, 0.8),
-            (Kind.STANDS, 0.97, 3, 0.8),
-            *[(kind, width, seed, 15.0) for kind in Kind for width in (0.95, 1.2, 1.6) for seed in (0, 1)],
+            (MeetingKind.WALKS, 1.2, 0, 0.8),
+            (MeetingKind.STANDS, 0.97, 3, 0.8),
+            *[(kind, width, seed, 15.0) for kind in MeetingKind for width in (0.95, 1.2, 1.6) for seed in (0, 1)],
         ],
         2,
     ),
 )
 def test_no_frame_is_dear_where_two_meet(
-    kind: Kind, width: float, seed: int, seconds: float, monkeypatch: pytest.MonkeyPatch
+    kind: MeetingKind, width: float, seed: int, seconds: float, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """While they come close to each other, or until they have passed."""
     counted, start = Counted(monkeypatch), drawn(width, kind, seed)

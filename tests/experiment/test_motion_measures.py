@@ -22,7 +22,7 @@ from elbowroom.experiment.motion.borne import borne, shares
 from elbowroom.experiment.motion.curves import curves_of
 from elbowroom.experiment.motion.cycles import PARTS, in_strides, mean_range
 from elbowroom.experiment.motion.feet import FootTrack, feet
-from elbowroom.experiment.motion.gaps import Passage, onset
+from elbowroom.experiment.motion.gaps import PassedGap, onset
 from elbowroom.experiment.motion.knees import knees
 from elbowroom.experiment.motion.published import KNEE, PELVIC_TILT, corridors
 from elbowroom.experiment.motion.smooth import log_dimensionless_jerk, smoothness, sparc
@@ -306,8 +306,8 @@ def test_a_head_that_turns_first_leads() -> None:
 
 
 def test_the_onset_lies_between_the_gap_that_turns_and_the_one_that_does_not() -> None:
-    def passage(ratio: float, turn: float) -> Passage:
-        return Passage(ratio, ratio, True, turn, 1.0, 1.0)
+    def passage(ratio: float, turn: float) -> PassedGap:
+        return PassedGap(ratio, ratio, True, turn, 1.0, 1.0)
 
     assert onset((passage(1.0, 40.0), passage(1.2, 0.0))) == pytest.approx(1.1)
     assert onset((passage(1.0, 10.0), passage(1.2, 0.0))) is None

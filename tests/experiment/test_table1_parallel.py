@@ -7,14 +7,14 @@ from typing import Any
 import pytest
 
 from elbowroom.errors import InputError
-from elbowroom.experiment.opened import Thing
+from elbowroom.experiment.opened import Openable
 from elbowroom.experiment.parallel import Processes
 
 
 @dataclass(frozen=True)
 class Square:
     number: int
-    things: tuple[Thing[Any], ...] = ()
+    things: tuple[Openable[Any], ...] = ()
 
     def run(self) -> tuple[int, int]:
         if self.number < 0:
@@ -24,7 +24,7 @@ class Square:
 
 @dataclass(frozen=True)
 class Death:
-    things: tuple[Thing[Any], ...] = ()
+    things: tuple[Openable[Any], ...] = ()
 
     def run(self) -> None:
         os._exit(9)

@@ -13,7 +13,7 @@ import pytest
 
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.errors import InputError
-from elbowroom.experiment.unseen_walk import Effort, walk_unseen
+from elbowroom.experiment.unseen_walk import WalkLimits, walk_unseen
 from elbowroom.server.apart.jobs import read_scene, walk_scene
 from elbowroom.server.app import make_app
 from elbowroom.server.schema.bounds import MAX_SCENE
@@ -105,12 +105,12 @@ def test_an_avatar_walks_unseen(library: Library) -> None:
 def test_a_walled_scene_is_not_feasible_and_work_has_an_end() -> None:
     wall = {"type": "box", "center": [0, 1.5, 2], "size": [16, 3, 0.3]}
     scene = Scene.from_dict(document(wall))
-    walk = walk_unseen(Humanoid.default(), scene, Effort(limit=4.0), clock=lambda: 0.0)
+    walk = walk_unseen(Humanoid.default(), scene, WalkLimits(limit=4.0), clock=lambda: 0.0)
     assert walk.decided
     assert not walk.passed
     assert walk.z < 2.0
     seconds = itertools.count()
-    given_up = walk_unseen(Humanoid.default(), scene, Effort(work=5.0), clock=lambda: float(next(seconds)))
+    given_up = walk_unseen(Humanoid.default(), scene, WalkLimits(work=5.0), clock=lambda: float(next(seconds)))
     assert not given_up.decided
     assert given_up.seconds < 1.0
 

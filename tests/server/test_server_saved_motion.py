@@ -13,7 +13,7 @@ from avatar_builder import Recipe, build
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.loading.avatar_file import load_humanoid_bytes
 from elbowroom.errors import InputError
-from elbowroom.export.animation import Animation, Poses
+from elbowroom.export.animation import Animation, ShownPoses
 from elbowroom.formats.bvh import parse_bvh
 from elbowroom.formats.gltf import parse_gltf
 from elbowroom.geometry import quaternion
@@ -33,7 +33,7 @@ RECIPES = {
 }
 
 
-def sent(humanoid: Humanoid, frames: int = 20) -> tuple[bytes, Poses]:
+def sent(humanoid: Humanoid, frames: int = 20) -> tuple[bytes, ShownPoses]:
     """Frames as a page sends them, and the poses in them."""
     rng = np.random.default_rng(0)
     t = np.arange(frames)[:, None] / 60.0
@@ -47,7 +47,7 @@ def sent(humanoid: Humanoid, frames: int = 20) -> tuple[bytes, Poses]:
         pose = poser.full_pose(rotations[i], hips[i])
         rows.append([t[i, 0], i >= frames, *places[i], headings[i], *pose.hips, *pose.rotations.ravel()])
     jumps = np.zeros(frames, bool)
-    return np.array(rows, "<f4").tobytes(), Poses(t[:, 0], jumps, rotations, hips, places, headings)
+    return np.array(rows, "<f4").tobytes(), ShownPoses(t[:, 0], jumps, rotations, hips, places, headings)
 
 
 @pytest.mark.parametrize("name", RECIPES)

@@ -11,7 +11,7 @@ from elbowroom.cluster.connection import connected
 from elbowroom.experiment.gauntlet.tasks import CourseTask
 from elbowroom.experiment.gauntlet.trial_settings import TrialSettings
 from elbowroom.experiment.machine import machine_kind
-from elbowroom.experiment.opened import Thing
+from elbowroom.experiment.opened import Openable
 from elbowroom.experiment.parallel import Task, Workers
 
 _EMPTY = 400  # tasks without work
@@ -48,7 +48,7 @@ class ClusterReport:
 class Nothing:
     """A task without work."""
 
-    things: tuple[Thing[Any], ...] = ()
+    things: tuple[Openable[Any], ...] = ()
 
     def run(self) -> None:
         """Nothing."""
@@ -61,7 +61,7 @@ class Timed:
     task: CourseTask
 
     @property
-    def things(self) -> tuple[Thing[Any], ...]:
+    def things(self) -> tuple[Openable[Any], ...]:
         """Those of the task."""
         return self.task.things
 

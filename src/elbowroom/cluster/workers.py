@@ -10,7 +10,7 @@ import ray
 from elbowroom.cluster.node import Node
 from elbowroom.cluster.nodes import Nodes, remote
 from elbowroom.errors import InputError
-from elbowroom.experiment.opened import Thing, bring, is_held, opened
+from elbowroom.experiment.opened import Openable, bring, is_held, opened
 from elbowroom.experiment.parallel import Task
 
 Result = TypeVar("Result")
@@ -34,7 +34,7 @@ class RayWorkers:
 
     def __init__(self, nodes: Nodes) -> None:
         self._nodes = nodes
-        self._kept: dict[Thing[Any], Any] = {}  # what tasks ask for, as it lies in the cluster's memory
+        self._kept: dict[Openable[Any], Any] = {}  # what tasks ask for, as it lies in the cluster's memory
 
     @property
     def at_once(self) -> int:

@@ -11,7 +11,7 @@ from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.root import RootState
 from elbowroom.control.controller import Controller
 from elbowroom.control.frame import Frame
-from elbowroom.dataset.hands import HANDS, TOUR, Hand, Way
+from elbowroom.dataset.hands import HANDS, TOUR, Hand, UsersWay
 from elbowroom.errors import InputError
 from elbowroom.experiment.crossing import DT
 from elbowroom.experiment.tour.targets import random_targets
@@ -72,7 +72,7 @@ def company_of(walker: Controller, humanoids: Sequence[Humanoid], scene: Scene, 
         controller = _begun(walker, humanoid, scene, taken, rng)
         at = controller.root.x, controller.root.z
         taken.append(at)
-        companions.append(Companion(humanoid, controller, HANDS[TOUR](Way(np.array([at, at])), controller, rng)))
+        companions.append(Companion(humanoid, controller, HANDS[TOUR](UsersWay(np.array([at, at])), controller, rng)))
     return Company(walker, companions)
 
 

@@ -7,7 +7,7 @@ import numpy as np
 from elbowroom.dataset.spec import STOCK, DatasetSpec
 
 
-class Draw(NamedTuple):
+class DrawnWalk(NamedTuple):
     """What the seed draws for one walk."""
 
     place: str
@@ -18,7 +18,7 @@ class Draw(NamedTuple):
     others: tuple[str, ...] = ()  # avatars of those who walk there too
 
 
-def draw(spec: DatasetSpec, number: int) -> Draw:
+def draw(spec: DatasetSpec, number: int) -> DrawnWalk:
     """What walk `number` is: the same whatever other walks there are."""
     rng = np.random.default_rng([spec.seed, number])
     lists = (spec.places, spec.avatars, spec.steering)
@@ -27,4 +27,4 @@ def draw(spec: DatasetSpec, number: int) -> Draw:
     swing = spec.swings[int(rng.integers(len(spec.swings)))]
     count = spec.company[int(rng.integers(len(spec.company)))]
     others = tuple(spec.avatars[int(rng.integers(len(spec.avatars)))] for _ in range(count))
-    return Draw(place, avatar, steering, seed, swing, others)
+    return DrawnWalk(place, avatar, steering, seed, swing, others)

@@ -7,7 +7,7 @@ from typing import Any
 from elbowroom.dataset.spec import STOCK, DatasetSpec, level
 from elbowroom.dataset.walk import SwingFile
 from elbowroom.errors import InputError
-from elbowroom.experiment.opened import Thing, opened
+from elbowroom.experiment.opened import Openable, opened
 from elbowroom.experiment.table1.tasks import AvatarFile, NamedScene
 
 
@@ -21,7 +21,7 @@ def check_drawn_from(spec: DatasetSpec, file: Path) -> None:
             raise InputError(f"{file}: {error}: {mend}") from None
 
 
-def _things(spec: DatasetSpec) -> Iterator[tuple[str, Thing[Any]]]:
+def _things(spec: DatasetSpec) -> Iterator[tuple[str, Openable[Any]]]:
     """The name of the list, and what an entry of it stands for."""
     for name in dict.fromkeys(spec.swings):
         yield "swings", SwingFile(name)

@@ -26,17 +26,17 @@ _VISITS = 100  # places of a tour, at most
 
 
 @dataclass(frozen=True, eq=False)
-class Way:
+class UsersWay:
     """Where a user means to go."""
 
     route: Floats  # (m, 2) x and z, metres
     line: CourseLine | None = None  # of a random course
 
 
-Made = Callable[[Way, Controller, np.random.Generator], Hand]
+Made = Callable[[UsersWay, Controller, np.random.Generator], Hand]
 
 
-def _straight(way: Way, controller: Controller, rng: np.random.Generator) -> Hand:
+def _straight(way: UsersWay, controller: Controller, rng: np.random.Generator) -> Hand:
     """W is held, along the line of a course; who is stuck backs up and tries again."""
     del controller
     if way.line is not None:
@@ -47,7 +47,7 @@ def _straight(way: Way, controller: Controller, rng: np.random.Generator) -> Han
 
 
 def _steered(made: Callable[[Floats], Steer]) -> Made:
-    def hand(way: Way, controller: Controller, rng: np.random.Generator) -> Hand:
+    def hand(way: UsersWay, controller: Controller, rng: np.random.Generator) -> Hand:
         del controller
         steer, begins = made(way.route), float(rng.uniform(0.0, 3.0))
         return lambda time, root, _: steer(begins + time, root.x, root.z)
@@ -55,7 +55,7 @@ def _steered(made: Callable[[Floats], Steer]) -> Made:
     return hand
 
 
-def _looking(way: Way, controller: Controller, rng: np.random.Generator) -> Hand:
+def _looking(way: UsersWay, controller: Controller, rng: np.random.Generator) -> Hand:
     del controller, rng
     steer = mouse_look(way.route)
     return lambda time, root, _: steer(time, root.x, root.z)
@@ -64,7 +64,7 @@ def _looking(way: Way, controller: Controller, rng: np.random.Generator) -> Hand
 class _Tour:
     """Goes to one random place after the other, by the way that the map knows."""
 
-    def __init__(self, way: Way, controller: Controller, rng: np.random.Generator) -> None:
+    def __init__(self, way: UsersWay, controller: Controller, rng: np.random.Generator) -> None:
         del way
         root, self._navigator, self._interval = controller.root, controller.navigator, controller.settings.interval
         here = float(root.x), float(root.height), float(root.z)

@@ -13,7 +13,7 @@ from elbowroom.body.pose.kinematics import body_model, posture_capsules
 from elbowroom.body.root import HEIGHT, ROOT_STATE, TOLD_FEET, RootState, told
 from elbowroom.body.skeleton import Skeleton
 from elbowroom.control.frame import Frame
-from elbowroom.dataset.draw import Draw
+from elbowroom.dataset.draw import DrawnWalk
 from elbowroom.experiment.crossing import DT
 from elbowroom.export.animation import Animation, posed_frames
 from elbowroom.planning.command import Command
@@ -30,7 +30,7 @@ _GEOMETRY = ("parts", "data", "floor")  # of a place in a scene's document
 
 
 def row_of(
-    number: int, drawn: Draw, fps: int, humanoid: Humanoid, scene: Scene, steps: Sequence[tuple[Command, Frame]]
+    number: int, drawn: DrawnWalk, fps: int, humanoid: Humanoid, scene: Scene, steps: Sequence[tuple[Command, Frame]]
 ) -> Row:
     """The row of walk `number`, every so many of its frames, 60 a second, that `fps` a second are left."""
     from elbowroom.dataset.columns import SMPL_BONES

@@ -16,8 +16,8 @@ from elbowroom.clips.style import style_named
 from elbowroom.control.controller import Controller
 from elbowroom.control.frame import Frame
 from elbowroom.dataset.company import Company, NoRoomError, company_of
-from elbowroom.dataset.draw import Draw, draw
-from elbowroom.dataset.hands import HANDS, TOUR, Way
+from elbowroom.dataset.draw import DrawnWalk, draw
+from elbowroom.dataset.hands import HANDS, TOUR, UsersWay
 from elbowroom.dataset.row import Row, others_in, row_of
 from elbowroom.dataset.spec import STOCK, STYLE, DatasetSpec, level
 from elbowroom.experiment.crossing import DT, start_for
@@ -25,7 +25,7 @@ from elbowroom.experiment.gauntlet.course import CourseMaker, NoCourseError
 from elbowroom.experiment.judge.apart import Walker, judge_apart
 from elbowroom.experiment.judge.motion import ShownMotion
 from elbowroom.experiment.judge.verdict import judge
-from elbowroom.experiment.opened import Thing, opened
+from elbowroom.experiment.opened import Openable, opened
 from elbowroom.experiment.table1.tasks import AvatarFile, NamedScene
 from elbowroom.planning.command import Command
 from elbowroom.world.scene import Scene
@@ -38,7 +38,7 @@ class Setting(NamedTuple):
 
     humanoid: Humanoid
     scene: Scene
-    way: Way
+    way: UsersWay
 
 
 @dataclass(frozen=True)
@@ -62,7 +62,7 @@ class WalkTask:
     number: int
 
     @property
-    def things(self) -> tuple[Thing[Any], ...]:
+    def things(self) -> tuple[Openable[Any], ...]:
         """Avatar and motions, and the scene unless it is made by a seed."""
         drawn = draw(self.spec, self.number)
         scene = () if level(drawn.place) is not None else (NamedScene(drawn.place),)
@@ -91,20 +91,20 @@ class WalkTask:
         return row | others_in(company, drawn.others, self.spec.fps)
 
 
-def setting_of(drawn: Draw) -> Setting:
+def setting_of(drawn: DrawnWalk) -> Setting:
     """Avatar and place of a walk; raises `NoCourseError` where a seed gives this body no course."""
     avatar, wanted = _avatar(drawn.avatar), level(drawn.place)
     humanoid = opened(avatar)
     if wanted is None:
         scene = opened(NamedScene(drawn.place))
         finish = scene.finish.position
-        return Setting(humanoid, scene, Way(np.array([(scene.start.x, scene.start.z), finish])))
+        return Setting(humanoid, scene, UsersWay(np.array([(scene.start.x, scene.start.z), finish])))
     course = _maker(avatar).course(wanted, drawn.seed)
     route = course.line.points(np.arange(0.0, course.line.length, _STEP))
-    return Setting(humanoid, course.scene, Way(route, course.line))
+    return Setting(humanoid, course.scene, UsersWay(route, course.line))
 
 
-def controller_of(spec: DatasetSpec, drawn: Draw, setting: Setting) -> Controller:
+def controller_of(spec: DatasetSpec, drawn: DrawnWalk, setting: Setting) -> Controller:
     """The controller at the start of a walk."""
     start = setting.scene.start if setting.way.line is not None else start_for(setting.scene, drawn.seed)
     motions = opened(SwingFile(drawn.swing))
@@ -114,7 +114,7 @@ def controller_of(spec: DatasetSpec, drawn: Draw, setting: Setting) -> Controlle
 
 
 def steps_of(
-    spec: DatasetSpec, drawn: Draw, setting: Setting, controller: Controller, company: Company
+    spec: DatasetSpec, drawn: DrawnWalk, setting: Setting, controller: Controller, company: Company
 ) -> Iterator[tuple[Command, Frame]]:
     """The walk, 60 frames a second: until the finish, or its time is over; a tour goes on past the finish."""
     hand = HANDS[drawn.steering](setting.way, controller, np.random.default_rng([drawn.seed, 1]))
@@ -129,7 +129,7 @@ def steps_of(
             return
 
 
-def company_on(drawn: Draw, setting: Setting, controller: Controller) -> Company:
+def company_on(drawn: DrawnWalk, setting: Setting, controller: Controller) -> Company:
     """Those who walk about the walker; raises `NoRoomError`."""
     humanoids = [opened(_avatar(name)) for name in drawn.others]
     return company_of(controller, humanoids, setting.scene, drawn.seed)

@@ -8,17 +8,17 @@ Opened = TypeVar("Opened")
 _MOST = 64  # things that a process holds
 
 
-class Thing(Protocol[Opened_co]):
+class Openable(Protocol[Opened_co]):
     """What can be opened, such as a scene by its name; equal things, equal hashes, and the same is found in them."""
 
     def open(self) -> Opened_co:
         """Read it; raises `InputError` where it cannot be read."""
 
 
-_held: dict[Thing[Any], Any] = {}
+_held: dict[Openable[Any], Any] = {}
 
 
-def opened(thing: Thing[Opened]) -> Opened:
+def opened(thing: Openable[Opened]) -> Opened:
     """What the thing names, opened now if this process does not hold it."""
     if thing not in _held:
         bring(thing, thing.open())
@@ -26,12 +26,12 @@ def opened(thing: Thing[Opened]) -> Opened:
     return found
 
 
-def is_held(thing: Thing[Any]) -> bool:
+def is_held(thing: Openable[Any]) -> bool:
     """Whether this process has opened or been brought it."""
     return thing in _held
 
 
-def bring(thing: Thing[Opened], found: Opened) -> None:
+def bring(thing: Openable[Opened], found: Opened) -> None:
     """Have `opened` give this: what was opened elsewhere, say where the file is. The oldest is forgotten."""
     if thing not in _held and len(_held) >= _MOST:
         del _held[next(iter(_held))]

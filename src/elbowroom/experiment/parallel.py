@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from typing import Any, ClassVar, Protocol, TypeVar
 
 from elbowroom.errors import InputError
-from elbowroom.experiment.opened import Thing
+from elbowroom.experiment.opened import Openable
 
 MAX_JOBS = 256
 Result_co = TypeVar("Result_co", covariant=True)
@@ -22,7 +22,7 @@ class Task(Protocol[Result_co]):
     """Something that can be sent to another process and done there; equal tasks give equal results."""
 
     @property
-    def things(self) -> tuple[Thing[Any], ...]:
+    def things(self) -> tuple[Openable[Any], ...]:
         """What it asks of `opened`: scenes, avatars. Who does many tasks on another machine sends each there once."""
 
     def run(self) -> Result_co:

@@ -15,7 +15,7 @@ from elbowroom.world.scene import Scene
 
 
 @dataclass(frozen=True)
-class Effort:
+class WalkLimits:
     """When to give up."""
 
     limit: float = 30.0  # seconds of simulated time
@@ -35,20 +35,20 @@ class UnseenWalk:
 
 
 def walk_unseen(
-    humanoid: Humanoid, scene: Scene, effort: Effort, clock: Callable[[], float] = time.process_time
+    humanoid: Humanoid, scene: Scene, limits: WalkLimits, clock: Callable[[], float] = time.process_time
 ) -> UnseenWalk:
-    """Let the scripted user steer from the start until the finish or the end of the effort.
+    """Let the scripted user steer from the start until the finish, or as far as the limits go.
 
     `clock` counts seconds of work. The same walk as a session's, but for planning being done at once.
     """
     controller = Controller(humanoid, scene)
     user = ScriptedUser(np.random.default_rng(0))
-    until = clock() + effort.work
+    until = clock() + limits.work
     frame, stuck = controller.step(Command(), 0.0), 0
-    while not scene.finished(controller.root) and frame.time < effort.limit and clock() < until:
+    while not scene.finished(controller.root) and frame.time < limits.limit and clock() < until:
         was_stuck = frame.stuck
         frame = controller.step(user.command(frame.stuck, DT), DT)
         stuck += frame.stuck and not was_stuck
     passed, root = scene.finished(controller.root), controller.root
-    decided = passed or frame.time >= effort.limit
+    decided = passed or frame.time >= limits.limit
     return UnseenWalk(decided, passed, stuck, frame.time, root.x, root.z)

@@ -46,11 +46,11 @@ class Animation:
         check_length(str(recording.path), shown.duration, humanoid, fps)
         rotations, hips = posed_frames(humanoid, shown.q, shown.roots)
         places = shown.roots[:, [0, HEIGHT, 1]]
-        poses = Poses(shown.times, shown.jumps, rotations, hips, places, shown.roots[:, 2], shown.clock)
+        poses = ShownPoses(shown.times, shown.jumps, rotations, hips, places, shown.roots[:, 2], shown.clock)
         return cls.of_poses(recording.path.stem, humanoid.skeleton, poses, fps)
 
     @classmethod
-    def of_poses(cls, name: str, skeleton: Skeleton, poses: "Poses", fps: float) -> "Animation":
+    def of_poses(cls, name: str, skeleton: Skeleton, poses: "ShownPoses", fps: float) -> "Animation":
         """The same of poses at any times."""
         before, after, share = even_moments(poses.times, poses.jumps, fps)
         part = share[:, None]
@@ -85,7 +85,7 @@ class Animation:
 
 
 @dataclass(frozen=True, eq=False)
-class Poses:
+class ShownPoses:
     """What was shown at some times; see `Animation` for the rest."""
 
     times: Floats  # (N,) seconds, not decreasing

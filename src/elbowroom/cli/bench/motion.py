@@ -15,7 +15,7 @@ from elbowroom.experiment.motion.settings import MotionSettings
 
 if TYPE_CHECKING:
     from elbowroom.experiment.motion.feet import Feet
-    from elbowroom.experiment.motion.gaps import Passage
+    from elbowroom.experiment.motion.gaps import PassedGap
     from elbowroom.experiment.motion.knees import Knees
     from elbowroom.experiment.motion.report import Gait, MotionReport
 
@@ -88,7 +88,7 @@ def _show(report: "MotionReport") -> None:
     print_row(f"{len(bands) - len(rows)} of {len(bands)} figures are a person's{others}", rows)
 
 
-def _passage(passage: "Passage") -> str:
+def _passage(passage: "PassedGap") -> str:
     if passage.speed is None:
         return "not passed"
     share = 100.0 * passage.speed

@@ -12,7 +12,7 @@ from elbowroom.cli.telling.output import print_json, print_row, progress_bar
 from elbowroom.experiment.bench.settings import PlanSettings
 
 if TYPE_CHECKING:
-    from elbowroom.experiment.bench.plan import PlanReport
+    from elbowroom.experiment.bench.plan import PlanCallsReport
 
 EXAMPLES = "Examples:  elbowroom bench plan  |  elbowroom bench plan --scene c --key-frames 16 --plots pictures --json"
 
@@ -49,7 +49,7 @@ def plan(
         _write_plots(report, plots)
 
 
-def show(report: "PlanReport") -> None:
+def show(report: "PlanCallsReport") -> None:
     """The figures as tables."""
     from elbowroom.experiment.machine import machine_kind
 
@@ -91,7 +91,7 @@ def _make_folder(folder: Path) -> None:
         raise _unwritable(folder, error) from None
 
 
-def _write_plots(report: "PlanReport", folder: Path) -> None:
+def _write_plots(report: "PlanCallsReport", folder: Path) -> None:
     from elbowroom.experiment.bench.plots import growth_plots
 
     try:

@@ -44,7 +44,7 @@ class CallCosts:
 
 
 @dataclass(frozen=True)
-class PlanReport:
+class PlanCallsReport:
     """All figures."""
 
     settings: PlanSettings
@@ -58,7 +58,7 @@ class PlanReport:
         return asdict(self) | {"worst_to_median_checks": self.calls.worst_to_median_checks}
 
 
-def run(settings: PlanSettings, tick: Callable[[int], None] = lambda _: None) -> PlanReport:
+def run(settings: PlanSettings, tick: Callable[[int], None] = lambda _: None) -> PlanCallsReport:
     """Cross the scene `rounds` times, then from other starts, for each horizon, and a lane for each number of posts."""
     humanoid, scene = Humanoid.default(), Scene.load(settings.scene)
     done = 0
@@ -76,7 +76,7 @@ def run(settings: PlanSettings, tick: Callable[[int], None] = lambda _: None) ->
         return _costs(calls)
 
     elsewhere = [replace(scene, start=start_for(scene, seed)) for seed in range(1, settings.starts + 1)]
-    return PlanReport(
+    return PlanCallsReport(
         settings,
         measured(settings.key_frames, *[scene] * settings.rounds),
         measured(settings.key_frames, *elsewhere),

@@ -20,7 +20,7 @@ from elbowroom.experiment.gauntlet.course import make_course
 from elbowroom.experiment.judge.motion import ShownMotion
 from elbowroom.experiment.judge.settings import JudgeSettings
 from elbowroom.experiment.judge.verdict import judge
-from elbowroom.experiment.opened import Thing, opened
+from elbowroom.experiment.opened import Openable, opened
 from elbowroom.experiment.parallel import Workers
 from elbowroom.experiment.table1.tasks import AvatarFile, NamedScene
 from elbowroom.planning.goal import natural_walk
@@ -35,7 +35,7 @@ _COURSES = 1000  # of a level among which straight ones are looked for
 
 
 @dataclass(frozen=True)
-class Run:
+class PlannerRun:
     """One planner on one crossing."""
 
     where: str
@@ -57,9 +57,9 @@ class PlannersReport:
     """All runs."""
 
     settings: PlannersSettings
-    runs: tuple[Run, ...]
+    runs: tuple[PlannerRun, ...]
 
-    def cells(self) -> Iterator[tuple[str, str, list[Run]]]:
+    def cells(self) -> Iterator[tuple[str, str, list[PlannerRun]]]:
         """The runs by place and planner, in the order in which they were made."""
         keys = dict.fromkeys((run.where, run.planner) for run in self.runs)
         for where, planner in keys:
@@ -89,11 +89,11 @@ class PlannerTask:
     limit: float  # seconds
 
     @property
-    def things(self) -> tuple[Thing[Any], ...]:
+    def things(self) -> tuple[Openable[Any], ...]:
         """Avatar and scene."""
         return AvatarFile(None), self.place
 
-    def run(self) -> Run:
+    def run(self) -> PlannerRun:
         """Cross, and be judged."""
         humanoid, scene = opened(AvatarFile(None)), opened(self.place)
         if self.planner == GENERAL:
@@ -114,7 +114,7 @@ def run(
         for where, place, seed in _crossings(settings)
         for planner in (*PLANNERS, GENERAL)
     ]
-    done: dict[int, Run] = {}
+    done: dict[int, PlannerRun] = {}
     results = ((k, task.run()) for k, task in enumerate(tasks)) if workers is None else workers.run(tasks)
     for place, result in results:
         done[place] = result
@@ -150,7 +150,7 @@ def _straight_courses(level: int, count: int) -> Iterator[int]:
     raise InputError(f"level {level}: fewer straight courses among {_COURSES} than asked for")
 
 
-def _ours(humanoid: Humanoid, scene: Scene, where: str, planner: str, seed: int, limit: float) -> Run:
+def _ours(humanoid: Humanoid, scene: Scene, where: str, planner: str, seed: int, limit: float) -> PlannerRun:
     # A gauntlet's scene is its seed's; only the user's start and patience vary with a scene's seeds.
     settings = CrossingSettings(planner=planner, seed=seed if where.startswith("scene") else 0, limit=limit)
     controller = controller_for(humanoid, scene, settings)
@@ -170,10 +170,12 @@ def _ours(humanoid: Humanoid, scene: Scene, where: str, planner: str, seed: int,
     return _judged(humanoid, scene, motion, (where, planner, seed), result.straight, costs)
 
 
-def _general(humanoid: Humanoid, scene: Scene, where: str, seed: int, limit: float) -> Run:
+def _general(humanoid: Humanoid, scene: Scene, where: str, seed: int, limit: float) -> PlannerRun:
     plan: GeneralPlan = plan_generally(humanoid, scene, limit, seed)
     if not plan.found:
-        return Run(where, GENERAL, seed, False, plan.seconds, 1e3 * plan.seconds, plan.motions, 0, np.nan, np.nan)
+        return PlannerRun(
+            where, GENERAL, seed, False, plan.seconds, 1e3 * plan.seconds, plan.motions, 0, np.nan, np.nan
+        )
     motion = plan.shown(crossing_problem(humanoid, scene))
     costs = plan.seconds, 1e3 * plan.seconds, plan.motions
     return _judged(humanoid, scene, motion, (where, GENERAL, seed), True, costs)
@@ -186,10 +188,10 @@ def _judged(
     about: tuple[str, str, int],
     through: bool,
     costs: tuple[float, float, int],
-) -> Run:
+) -> PlannerRun:
     verdict = judge(motion, humanoid, scene, JudgeSettings(mesh=False))
     upper = motion.q[:, DofGroup.ROOT.size :]
     goals = natural_walk()(RootPath(0.0, DT, motion.roots))
     away = float(np.sqrt(np.mean((upper - goals) ** 2)))
     swing = float(np.linalg.norm(np.diff(upper, axis=0), axis=1).mean() / DT)
-    return Run(*about, through, *costs, verdict.capsules.touching, away, swing)
+    return PlannerRun(*about, through, *costs, verdict.capsules.touching, away, swing)

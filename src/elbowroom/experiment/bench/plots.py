@@ -3,7 +3,7 @@
 import math
 from collections.abc import Sequence
 
-from elbowroom.experiment.bench.plan import CallCosts, PlanReport
+from elbowroom.experiment.bench.plan import CallCosts, PlanCallsReport
 from elbowroom.experiment.report.chart import HEIGHT, WIDTH, Axis, Mark, Panel, Series, draw
 from elbowroom.experiment.report.svg import tag
 
@@ -13,7 +13,7 @@ _STYLE = (
 )
 
 
-def growth_plots(report: PlanReport) -> dict[str, str]:
+def growth_plots(report: PlanCallsReport) -> dict[str, str]:
     """SVG documents: "horizon" and "obstacles"; dots are medians of the calls that search, bars reach to the 99th
     percentile of all."""
     settings = report.settings

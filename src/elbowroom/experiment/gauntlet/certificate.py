@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.experiment.gauntlet.line import CourseLine, steady_walk
-from elbowroom.experiment.gauntlet.motion import BodyMotion
+from elbowroom.experiment.gauntlet.motion import UpperBodyMotion
 
 Floats = NDArray[np.float64]
 
@@ -34,7 +34,7 @@ class Certificate:
         return np.concatenate([self.roots[:, :3], self.uppers], axis=1)
 
 
-def certify(line: CourseLine, motion: BodyMotion, speed: float, margin: float) -> Certificate:
+def certify(line: CourseLine, motion: UpperBodyMotion, speed: float, margin: float) -> Certificate:
     """The walk along a line with a body motion, sampled densely; whoever calls sees to it that it keeps the margin."""
     walk = steady_walk(line, speed, RATE)
     return Certificate(margin, speed, walk.times, walk.way, walk.states, motion.at(walk.way))

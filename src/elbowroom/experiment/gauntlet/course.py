@@ -15,10 +15,10 @@ from elbowroom.experiment.gauntlet.body_rows import BodyRows
 from elbowroom.experiment.gauntlet.certificate import Certificate, certify
 from elbowroom.experiment.gauntlet.draw import GRAIN, Draw
 from elbowroom.experiment.gauntlet.levels import TWIST, Level, level_of
-from elbowroom.experiment.gauntlet.line import CourseLine, Turn
+from elbowroom.experiment.gauntlet.line import CourseLine, LineTurn
 from elbowroom.experiment.gauntlet.motion import DRAWN, Passage, draw_motion
 from elbowroom.experiment.gauntlet.names import LARGEST_SEED
-from elbowroom.experiment.gauntlet.placing import Placed, fill_passage, surroundings
+from elbowroom.experiment.gauntlet.placing import PlacedBox, fill_passage, passage_surroundings
 from elbowroom.experiment.gauntlet.self_clearance import SelfClearance
 from elbowroom.experiment.gauntlet.speeds import HumanSpeeds
 from elbowroom.experiment.gauntlet.sweep import SweptBody
@@ -103,9 +103,9 @@ class CourseMaker:
         if not self._is_clear_of_itself(certificate):
             return None
         swept, stances = self.body.certificate(certificate, line), self.body.stances(line)
-        groups: list[list[Placed]] = []
+        groups: list[list[PlacedBox]] = []
         for passage in passages:
-            around = surroundings(self.body, line, swept, stances, passage, level.margin)
+            around = passage_surroundings(self.body, line, swept, stances, passage, level.margin)
             group = fill_passage(draw, level, passage, around)
             if group is None:
                 return None
@@ -162,28 +162,28 @@ def _passages(draw: Draw, level: Level, winding: bool) -> tuple[Passage, ...]:
 
 def _line(draw: Draw, passages: tuple[Passage, ...], sharpest: float) -> CourseLine:
     """A line with turns between the passages; through short passages it goes on turning."""
-    turns: list[Turn] = []
+    turns: list[LineTurn] = []
     for before, after in pairwise(passages):
         begin = before.end if before.long else before.middle
         end = after.begin if after.long else after.middle
         most = min(sharpest, (end - begin) / (1.5 * _SHARPEST))
         if sharpest > 0.0 and draw.chance(_TURNS):
-            turns.append(Turn(begin, end, round(draw.sign() * draw.between((0.4 * most, most)), GRAIN)))
+            turns.append(LineTurn(begin, end, round(draw.sign() * draw.between((0.4 * most, most)), GRAIN)))
     return CourseLine(round(passages[-1].end + _FINISH + _RUN_OUT, GRAIN), tuple(turns))
 
 
-def _all_clear(groups: list[list[Placed]], swept: BodyRows, margin: float) -> bool:
+def _all_clear(groups: list[list[PlacedBox]], swept: BodyRows, margin: float) -> bool:
     """Whether the certificate keeps its margin from all obstacles on the whole way."""
     return all(swept.gap(obstacle.row()) >= margin for group in groups for obstacle in group)
 
 
-def _indices(groups: list[list[Placed]]) -> tuple[tuple[int, ...], ...]:
+def _indices(groups: list[list[PlacedBox]]) -> tuple[tuple[int, ...], ...]:
     ends = np.cumsum([0, *(len(group) for group in groups)])
     return tuple(tuple(range(first, last)) for first, last in zip(ends[:-1].tolist(), ends[1:].tolist(), strict=True))
 
 
 def _document(
-    level: Level, seed: int, line: CourseLine, passages: tuple[Passage, ...], groups: list[list[Placed]]
+    level: Level, seed: int, line: CourseLine, passages: tuple[Passage, ...], groups: list[list[PlacedBox]]
 ) -> dict[str, Any]:
     """The course as a scene file's JSON."""
     finish = passages[-1].end + _FINISH

@@ -24,7 +24,7 @@ def smoothstep(x: ArrayLike) -> Floats:
 
 
 @dataclass(frozen=True)
-class Turn:
+class LineTurn:
     """Where the heading of a line changes."""
 
     begin: float  # metres along the line
@@ -37,7 +37,7 @@ class CourseLine:
     """A line without corners from the origin, first along +Z; its points are given by the way `s` in metres."""
 
     length: float
-    turns: tuple[Turn, ...] = ()
+    turns: tuple[LineTurn, ...] = ()
 
     @property
     def straight(self) -> bool:
@@ -121,7 +121,7 @@ def walk_along(line: CourseLine, s: ArrayLike, speed: ArrayLike, phase: ArrayLik
 
 
 @dataclass(frozen=True, eq=False)
-class Walk:
+class LineWalk:
     """A body that walks on a line: from a stand to a constant speed, and on to the line's end."""
 
     times: Floats  # (K,) seconds
@@ -129,7 +129,7 @@ class Walk:
     states: Floats  # (K, 7) root states
 
 
-def steady_walk(line: CourseLine, speed: float, rate: float, acceleration: float = 2.0) -> Walk:
+def steady_walk(line: CourseLine, speed: float, rate: float, acceleration: float = 2.0) -> LineWalk:
     """The walk along a line at `speed`, `rate` samples a second; m/s, m/s^2."""
     ramp = speed / acceleration
     duration = line.length / speed + 0.5 * ramp
@@ -141,4 +141,4 @@ def steady_walk(line: CourseLine, speed: float, rate: float, acceleration: float
     starting = int(np.searchsorted(times, ramp))
     cadence[:starting] = [phase_rate(v, 0.0, 0.0) for v in speeds[:starting]]
     phase = np.concatenate([[0.0], np.cumsum(0.5 * (cadence[:-1] + cadence[1:]) / rate)])
-    return Walk(times, way, walk_along(line, way, speeds, phase))
+    return LineWalk(times, way, walk_along(line, way, speeds, phase))

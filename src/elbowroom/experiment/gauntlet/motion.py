@@ -70,7 +70,7 @@ class Passage:
 
 
 @dataclass(frozen=True, eq=False)
-class BodyMotion:
+class UpperBodyMotion:
     """Upper bodies as a function of the way: through key postures, resting at each, C1."""
 
     way: Floats  # (K,) metres along the line, increasing
@@ -86,7 +86,7 @@ class BodyMotion:
 
 def draw_motion(
     draw: Draw, passages: tuple[Passage, ...], check: SelfClearance, speeds: HumanSpeeds
-) -> BodyMotion | None:
+) -> UpperBodyMotion | None:
     """A motion that is within the limits of joints and speeds, and does not run into itself; None if none was drawn."""
     hanging = np.round(standing_posture(np.zeros(7)), GRAIN)
     way, postures = [max(0.0, passages[0].begin - _APPROACH)], [hanging]
@@ -97,7 +97,7 @@ def draw_motion(
             return None
         way += [passage.begin, passage.end]
         postures += [held, _drifted(draw, held, hanging, check, farthest(speeds, passage.end - passage.begin))]
-    motion = BodyMotion(np.array(way), np.array(postures))
+    motion = UpperBodyMotion(np.array(way), np.array(postures))
     return motion if _is_clear(motion, check) else None
 
 
@@ -167,7 +167,7 @@ def _limited(before: Floats, wanted: Floats, reach: Floats) -> Floats:
     return np.round(followed(posture), GRAIN)
 
 
-def _is_clear(motion: BodyMotion, check: SelfClearance) -> bool:
+def _is_clear(motion: UpperBodyMotion, check: SelfClearance) -> bool:
     """Whether the motion never runs into itself."""
     way = np.arange(motion.way[0], motion.way[-1], _TRANSITION_STEP)
     return bool(check.clear(_walking(len(way)), motion.at(way)).all())

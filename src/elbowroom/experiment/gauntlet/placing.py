@@ -36,7 +36,7 @@ _PAST = 0.25  # metres: what is pushed this far past the line has missed the bod
 
 
 @dataclass(frozen=True)
-class Placed:
+class PlacedBox:
     """An obstacle in its place: whole millimetres and milliradians."""
 
     name: str
@@ -95,7 +95,7 @@ def pushed(keepout: Keepout, box: Floats, push: Floats, done: float, most: float
 
 
 @dataclass(frozen=True, eq=False)
-class Surroundings:
+class PassageSurroundings:
     """What the obstacles of one passage have to mind."""
 
     spot: Spot  # the middle of the passage
@@ -110,9 +110,9 @@ class Surroundings:
         return all(least_gap(walk, box, 0.0) < deep for walk in self.natural)
 
 
-def surroundings(
+def passage_surroundings(
     body: SweptBody, line: CourseLine, certificate: BodyRows, stances: BodyRows, passage: Passage, margin: float
-) -> Surroundings:
+) -> PassageSurroundings:
     """What matters near a passage."""
     first, last = passage.begin - _REACH, passage.end + _REACH
     leg_room = _LEG_ROOM * min(body.scale, 1.0)
@@ -120,13 +120,13 @@ def surroundings(
     fine = Keepout(certificate.pieces, stances.pieces, margin, leg_room)
     rough = Keepout(certificate.every(_ROUGHLY).pieces, stances.every(3).pieces, margin, leg_room)
     natural = body.natural_walks(line, max(0.0, passage.begin - _BESIDE), passage.end + _BESIDE)
-    return Surroundings(line.spot(passage.middle), rough, fine, [walk.pieces for walk in natural], body.scale)
+    return PassageSurroundings(line.spot(passage.middle), rough, fine, [walk.pieces for walk in natural], body.scale)
 
 
-def fill_passage(draw: Draw, level: Level, passage: Passage, around: Surroundings) -> list[Placed] | None:
+def fill_passage(draw: Draw, level: Level, passage: Passage, around: PassageSurroundings) -> list[PlacedBox] | None:
     """Random obstacles for a passage, each unlike the others; None if not enough were found."""
     wanted = draw.whole(*level.obstacles)
-    placed: list[Placed] = []
+    placed: list[PlacedBox] = []
     found = 0
     for _ in range(_PROPOSALS):
         group = [
@@ -143,11 +143,11 @@ def fill_passage(draw: Draw, level: Level, passage: Passage, around: Surrounding
     return placed if found >= level.obstacles[0] else None
 
 
-def _is_known(name: str, placed: list[Placed]) -> bool:
+def _is_known(name: str, placed: list[PlacedBox]) -> bool:
     return any(obstacle.name == name for obstacle in placed)
 
 
-def _overlaps(new: Placed, placed: list[Placed]) -> bool:
+def _overlaps(new: PlacedBox, placed: list[PlacedBox]) -> bool:
     """Whether an obstacle is half inside another: the middle of one in the other."""
     box = new.row()
     others = [obstacle.row() for obstacle in placed]
@@ -159,12 +159,12 @@ def _holds(box: Floats, point: Floats) -> bool:
     return bool(inside.all())
 
 
-def _pushed(proposal: Proposal, around: Surroundings) -> Placed | None:
+def _pushed(proposal: Proposal, around: PassageSurroundings) -> PlacedBox | None:
     """The obstacle where it can be pushed no further; None if it touches the certificate or misses the natural walk."""
     heading = round(around.spot.heading, GRAIN)
     turn = (proposal.turn[0], round(proposal.turn[1] + heading, GRAIN), proposal.turn[2])
     end = [start + way for start, way in zip(proposal.begin, proposal.push, strict=True)]
-    box = Placed(proposal.name, around.spot.world(*proposal.begin), turn, proposal.size).row()
+    box = PlacedBox(proposal.name, around.spot.world(*proposal.begin), turn, proposal.size).row()
     begin = box[:3].copy()
     push = np.array(around.spot.world(*end)) - begin
     most = _way_to_line(proposal, around.scale)
@@ -178,7 +178,7 @@ def _pushed(proposal: Proposal, around: Surroundings) -> Placed | None:
     if not around.fine.free(box) or not around.touched(box):
         return None
     x, y, z = box[:3].tolist()
-    return Placed(proposal.name, (x, y, z), turn, proposal.size)
+    return PlacedBox(proposal.name, (x, y, z), turn, proposal.size)
 
 
 def _moved(box: Floats, by: Floats) -> Floats:

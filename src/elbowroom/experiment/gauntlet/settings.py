@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 MOST_COURSES = 1_000_000
 
 
-class Course(Task[dict[str, Any]], Protocol):
+class SeededTask(Task[dict[str, Any]], Protocol):
     """The task of one course."""
 
     @property
@@ -68,7 +68,7 @@ class Gauntlet(Protocol):
     def no_course(self) -> str:
         """Why a seed may give a body no course; the seeds go into the braces."""
 
-    def tasks(self) -> Sequence[Course]:
+    def tasks(self) -> Sequence[SeededTask]:
         """A task for every course."""
 
     def scene(self, humanoid: Humanoid, k: int) -> "Scene":

@@ -15,7 +15,7 @@ from elbowroom.experiment.gauntlet.judged import judged_walk
 from elbowroom.experiment.gauntlet.shapes import in_shapes
 from elbowroom.experiment.gauntlet.trial import JudgeFigures, TrialResult, controller_on, walk_course
 from elbowroom.experiment.gauntlet.trial_settings import TrialSettings
-from elbowroom.experiment.opened import Thing, opened
+from elbowroom.experiment.opened import Openable, opened
 
 Record = dict[str, Any]
 
@@ -52,7 +52,7 @@ class CourseTask:
         return f"{self.level}-{self.seed}"
 
     @property
-    def things(self) -> tuple[Thing[Any], ...]:
+    def things(self) -> tuple[Openable[Any], ...]:
         """The avatar."""
         return (CourseWalker(self.avatar),)
 

@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from elbowroom.body.humanoid import Humanoid
-from elbowroom.experiment.judge.capsule_shapes import CapsuleShapes, Placed
+from elbowroom.experiment.judge.capsule_shapes import CapsuleShapes, PlacedCapsules
 from elbowroom.experiment.judge.motion import Moments, ShownMotion
 from elbowroom.experiment.judge.obstacles import coal_library
 from elbowroom.experiment.judge.poses import Poser
@@ -64,7 +64,7 @@ class _Judge:
             depths[pose] = max(depths[pose], -self._distance(first, second, pose, a, b))
         return depths
 
-    def _distance(self, first: Placed, second: Placed, pose: int, a: int, b: int) -> float:
+    def _distance(self, first: PlacedCapsules, second: PlacedCapsules, pose: int, a: int, b: int) -> float:
         one, other = self._shapes
         result = self._coal.DistanceResult()
         at, there = one.place(first, pose, a), other.place(second, pose, b)

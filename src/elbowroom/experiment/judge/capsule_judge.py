@@ -7,10 +7,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.humanoid import Humanoid
-from elbowroom.experiment.judge.around import Around
-from elbowroom.experiment.judge.capsule_shapes import CapsuleShapes, Placed
+from elbowroom.experiment.judge.capsule_shapes import CapsuleShapes, PlacedCapsules
 from elbowroom.experiment.judge.case import Case
 from elbowroom.experiment.judge.nearest_first import nearest_first
+from elbowroom.experiment.judge.obstacle_index import ObstacleIndex
 from elbowroom.experiment.judge.obstacles import Obstacle, coal_library
 from elbowroom.experiment.judge.stretches import stretches_of
 
@@ -24,7 +24,7 @@ class CapsuleJudge:
     """Judges the collision body of one avatar in one scene."""
 
     def __init__(self, humanoid: Humanoid, obstacles: Sequence[Obstacle]) -> None:
-        self._coal, self._around = coal_library(), Around(obstacles)
+        self._coal, self._index = coal_library(), ObstacleIndex(obstacles)
         self._shapes = CapsuleShapes(humanoid)
         self._request = self._coal.DistanceRequest()
 
@@ -39,7 +39,7 @@ class CapsuleJudge:
         middle, away = placed.at(stretches.middles), self._shapes.away(stretches)
         reach = np.abs(middle.half_axes) + (self._shapes.radii + away)[..., None]
         low, high = (middle.middles - reach).min(axis=(0, 1)), (middle.middles + reach).max(axis=(0, 1))
-        for least, obstacle in self._around.nearest_first(low, high):
+        for least, obstacle in self._index.nearest_first(low, high):
             if least > case.ledger.limit:
                 return
             wide = self._bounds(middle.middles, middle.half_axes, obstacle) - self._shapes.radii - away
@@ -48,7 +48,7 @@ class CapsuleJudge:
                 every = np.broadcast_to(capsules[:, None], rows.shape)
                 self._judge_near(placed, rows.ravel(), every.ravel(), obstacle, case)
 
-    def _judge_near(self, placed: Placed, rows: Ints, capsules: Ints, obstacle: Obstacle, case: Case) -> None:
+    def _judge_near(self, placed: PlacedCapsules, rows: Ints, capsules: Ints, obstacle: Obstacle, case: Case) -> None:
         """Enter what capsules (n,) do to an obstacle at poses `rows` (n,)."""
         axes = placed.middles[rows, capsules], placed.half_axes[rows, capsules]
         bounds = self._bounds(*axes, obstacle) - self._shapes.radii[capsules]

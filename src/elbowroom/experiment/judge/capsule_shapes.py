@@ -17,16 +17,16 @@ Ints = NDArray[np.int64]
 _POINT = 1e-9  # metres: a shorter capsule is a ball
 
 
-class Placed(NamedTuple):
+class PlacedCapsules(NamedTuple):
     """Capsules at N poses."""
 
     turns: Floats  # (N, C, 3, 3) of the joints
     middles: Floats  # (N, C, 3) metres
     half_axes: Floats  # (N, C, 3)
 
-    def at(self, rows: Ints) -> "Placed":
+    def at(self, rows: Ints) -> "PlacedCapsules":
         """At some of the poses."""
-        return Placed(self.turns[rows], self.middles[rows], self.half_axes[rows])
+        return PlacedCapsules(self.turns[rows], self.middles[rows], self.half_axes[rows])
 
 
 class CapsuleShapes:
@@ -48,11 +48,11 @@ class CapsuleShapes:
             for radius, length in zip(self.radii, lengths, strict=True)
         ]
 
-    def placed(self, posed: Posed) -> Placed:
+    def placed(self, posed: Posed) -> PlacedCapsules:
         """The capsules of N posed bodies."""
         turns = posed.rotations[:, self._joints]
         middles = posed.positions[:, self._joints] + np.einsum("ncij,cj->nci", turns, self._middles)
-        return Placed(turns, middles, np.einsum("ncij,cj->nci", turns, self._half_axes))
+        return PlacedCapsules(turns, middles, np.einsum("ncij,cj->nci", turns, self._half_axes))
 
     @property
     def reach(self) -> float:
@@ -63,7 +63,7 @@ class CapsuleShapes:
         """How far (S, C) axes are, at any pose of a stretch, at most from where they are at its middle one, metres."""
         return stretches.away(self._joints, self._farthest)
 
-    def place(self, placed: Placed, pose: int, capsule: int) -> Any:
+    def place(self, placed: PlacedCapsules, pose: int, capsule: int) -> Any:
         """Where the library has to put a capsule's shape."""
         turn = placed.turns[pose, capsule] @ self._turns[capsule]
         return self._coal.Transform3s(turn, placed.middles[pose, capsule])

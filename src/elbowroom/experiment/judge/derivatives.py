@@ -20,7 +20,7 @@ class Extent:
 
 
 @dataclass(frozen=True)
-class Smoothness:
+class Derivatives:
     """Derivatives of a group's motion, over its joints together, or of the root's place; in units per s, s^2, s^3."""
 
     speed: Extent
@@ -28,7 +28,7 @@ class Smoothness:
     jerk: Extent
 
 
-def smoothness(motion: ShownMotion) -> dict[str, Smoothness]:
+def derivatives(motion: ShownMotion) -> dict[str, Derivatives]:
     """Figures for every local group and `heading` in radians, and for `root` in metres.
 
     The waist's lowering counts in its own unit, see `body.dof`.
@@ -48,7 +48,7 @@ def _length(rates: Floats) -> Floats:
     return length
 
 
-def _figures(motion: ShownMotion, values: Floats) -> Smoothness:
+def _figures(motion: ShownMotion, values: Floats) -> Derivatives:
     orders: list[list[Floats]] = [[], [], []]
     for run in motion.runs():
         times, track = _moving(motion.times[run], values[run])
@@ -59,7 +59,7 @@ def _figures(motion: ShownMotion, values: Floats) -> Smoothness:
             track = np.diff(track, axis=0) / steps[:, None]
             times = times[:-1] + 0.5 * steps
             order.append(_length(track))
-    return Smoothness(*(_extent(np.concatenate([np.empty(0), *order])) for order in orders))
+    return Derivatives(*(_extent(np.concatenate([np.empty(0), *order])) for order in orders))
 
 
 def _moving(times: Floats, values: Floats) -> tuple[Floats, Floats]:

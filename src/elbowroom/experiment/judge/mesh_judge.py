@@ -7,10 +7,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.skeleton import Skeleton
-from elbowroom.experiment.judge.around import Around
 from elbowroom.experiment.judge.case import Case
 from elbowroom.experiment.judge.crossing_triangles import crossing_depths, has_area
 from elbowroom.experiment.judge.nearest_first import nearest_first
+from elbowroom.experiment.judge.obstacle_index import ObstacleIndex
 from elbowroom.experiment.judge.obstacles import Obstacle, coal_library
 from elbowroom.experiment.judge.patches import Patch, patches_of
 from elbowroom.experiment.judge.pieces import MOST, Piece
@@ -50,7 +50,7 @@ class MeshJudge:
     """
 
     def __init__(self, skin: Skin, skeleton: Skeleton, obstacles: Sequence[Obstacle]) -> None:
-        self._coal, self._around = coal_library(), Around(obstacles)
+        self._coal, self._index = coal_library(), ObstacleIndex(obstacles)
         self._patches = patches_of(skin)
         self._regions = [region_of(bone) for bone in skeleton.names]
         self._nearest = self._coal.DistanceRequest()
@@ -65,7 +65,7 @@ class MeshJudge:
         surface = _Surface(case)
         low, high = self._patches.spans(case.posed, surface.stretches)  # (S, P, 3)
         lowest, highest = low.min(axis=1), high.max(axis=1)
-        for least, obstacle in self._around.nearest_first(lowest.min(axis=0), highest.max(axis=0)):
+        for least, obstacle in self._index.nearest_first(lowest.min(axis=0), highest.max(axis=0)):
             if least > case.ledger.limit:
                 return
             some = np.flatnonzero(obstacle.world_distance(lowest, highest) <= case.ledger.limit)

@@ -10,7 +10,7 @@ from elbowroom.experiment.judge.obstacles import Obstacle, distance_between
 Floats = NDArray[np.float64]
 
 
-class Around:
+class ObstacleIndex:
     """Obstacles that keep their places to each other."""
 
     def __init__(self, obstacles: Sequence[Obstacle]) -> None:

@@ -15,7 +15,7 @@ from elbowroom.body.dof import ARMS, DOF, DofGroup, limits
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.made_once import made_once
 from elbowroom.body.root import ROOT_STATE
-from elbowroom.experiment.judge.capsule_shapes import CapsuleShapes, Placed
+from elbowroom.experiment.judge.capsule_shapes import CapsuleShapes, PlacedCapsules
 from elbowroom.experiment.judge.case import Case
 from elbowroom.experiment.judge.nearest_first import nearest_first
 from elbowroom.experiment.judge.obstacles import coal_library
@@ -79,7 +79,7 @@ class SelfJudge:
             of_row = np.broadcast_to(pairs[:, None], rows.shape)
             self._judge_near(placed, rows.ravel(), of_row.ravel(), case)
 
-    def _judge_near(self, placed: Placed, rows: Ints, pairs: Ints, case: Case) -> None:
+    def _judge_near(self, placed: PlacedCapsules, rows: Ints, pairs: Ints, case: Case) -> None:
         """Enter what pairs (n,) do at poses `rows` (n,)."""
         bounds = self._bounds(placed, rows, pairs)
         for (some,) in nearest_first(bounds, lambda: case.ledger.depth_limit, 1):
@@ -88,7 +88,7 @@ class SelfJudge:
             beyond = self._distance(placed, pose, one, other) - self._natural[pair]
             case.enter(pose, self._shapes.names[one], self._shapes.names[other], float(beyond))
 
-    def _bounds(self, placed: Placed, poses: Ints, pairs: Ints) -> Floats:
+    def _bounds(self, placed: PlacedCapsules, poses: Ints, pairs: Ints) -> Floats:
         """A lower bound of the distances of pairs at poses: that of the nearest two of the balls round two axes."""
         one, other = self._pairs[pairs].T
         size = 0.5 * self._lengths / _BALLS + self._shapes.radii
@@ -101,7 +101,7 @@ class SelfJudge:
         bounds: Floats = np.sqrt(apart) - size[one] - size[other] - self._natural[pairs]
         return bounds
 
-    def _distance(self, placed: Placed, pose: int, one: int, other: int) -> float:
+    def _distance(self, placed: PlacedCapsules, pose: int, one: int, other: int) -> float:
         shapes, places = self._shapes.shapes, [self._shapes.place(placed, pose, part) for part in (one, other)]
         result = self._coal.DistanceResult()
         return float(self._coal.distance(shapes[one], places[0], shapes[other], places[1], self._request, result))

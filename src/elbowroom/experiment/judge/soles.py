@@ -25,7 +25,7 @@ IN_GROUND = 0.003  # metres that a sole may be in what it stands on
 _SIDES = ("left", "right")
 
 
-class Soles:
+class RaisedSoles:
     """How much higher the feet of one avatar are held against obstacles, in one motion."""
 
     def __init__(self, humanoid: Humanoid, poser: Poser, motion: ShownMotion, *, floors: bool = False) -> None:

@@ -11,6 +11,7 @@ from elbowroom.body.humanoid import Humanoid
 from elbowroom.control.recordings.recording import Recording
 from elbowroom.experiment.judge.capsule_judge import CapsuleJudge
 from elbowroom.experiment.judge.case import Case
+from elbowroom.experiment.judge.derivatives import Derivatives, derivatives
 from elbowroom.experiment.judge.ledger import Contact, Ledger, Nearness
 from elbowroom.experiment.judge.mesh_judge import MeshJudge
 from elbowroom.experiment.judge.motion import Moments, ShownMotion
@@ -19,8 +20,7 @@ from elbowroom.experiment.judge.poses import Poser
 from elbowroom.experiment.judge.self_judge import self_judge
 from elbowroom.experiment.judge.settings import JudgeSettings
 from elbowroom.experiment.judge.skin import skin_of
-from elbowroom.experiment.judge.smoothness import Smoothness, smoothness
-from elbowroom.experiment.judge.soles import Soles
+from elbowroom.experiment.judge.soles import RaisedSoles
 from elbowroom.world.scene import Scene
 
 Floats = NDArray[np.float64]
@@ -56,7 +56,7 @@ class Verdict:
     mesh_note: str  # why there is no mesh, else empty
     triangles: int  # of the mesh that were judged
     triangles_left_out: int  # moved by springs, or rigid things on a skinned body
-    smoothness: dict[str, Smoothness]
+    smoothness: dict[str, Derivatives]
 
     @property
     def clean(self) -> bool:
@@ -105,7 +105,7 @@ class Judging:
         self._skin, self._note = skin_of(humanoid) if chosen.mesh else (None, "not asked for")
         self._of_capsules, self._of_mesh = Ledger(chosen.capsule_tolerance), Ledger(chosen.mesh_tolerance)
         self._of_itself, self._itself = Ledger(chosen.self_tolerance), self_judge(humanoid)
-        self._soles = Soles(humanoid, self._poser, motion, floors=math.isinf(scene.obstacles.ground))
+        self._soles = RaisedSoles(humanoid, self._poser, motion, floors=math.isinf(scene.obstacles.ground))
         around = [surroundings.obstacles for surroundings in self._surroundings]
         self._capsules, skin = [CapsuleJudge(humanoid, obstacles) for obstacles in around], self._skin
         self._mesh = [] if skin is None else [MeshJudge(skin, humanoid.skeleton, obstacles) for obstacles in around]
@@ -148,7 +148,7 @@ class Judging:
             mesh_note=self._note,
             triangles=0 if skin is None else len(skin.triangles),
             triangles_left_out=0 if skin is None else skin.left_out,
-            smoothness=smoothness(motion),
+            smoothness=derivatives(motion),
         )
 
 

@@ -13,7 +13,7 @@ from elbowroom.control.controller import Controller
 from elbowroom.control.frame import Frame
 from elbowroom.control.plans.lookahead import Lookahead
 from elbowroom.experiment.beside import BesideDesk
-from elbowroom.experiment.meeting.settings import Kind
+from elbowroom.experiment.meeting.settings import MeetingKind
 from elbowroom.experiment.pacing import late_frames
 from elbowroom.planning.command import Command
 from elbowroom.world.scene import Scene
@@ -73,12 +73,12 @@ def placed(heading: float, left: float, ahead: float) -> tuple[float, float]:
     return left * cosine + ahead * sine, ahead * cosine - left * sine
 
 
-def drawn(width: float, kind: Kind, seed: int) -> Start:
+def drawn(width: float, kind: MeetingKind, seed: int) -> Start:
     """Both somewhere across a corridor, some metres apart, each with a pace of its own; it leads anywhere."""
-    rng = np.random.default_rng([seed, round(1000 * width), list(Kind).index(kind)])
+    rng = np.random.default_rng([seed, round(1000 * width), list(MeetingKind).index(kind)])
     room = 0.5 * width - _BODY
     left = float(rng.uniform(-room, room)), float(rng.uniform(-room, room))
-    paces = float(rng.uniform(0.6, 1.0)), float(rng.uniform(0.6, 1.0)) * (kind is Kind.WALKS)
+    paces = float(rng.uniform(0.6, 1.0)), float(rng.uniform(0.6, 1.0)) * (kind is MeetingKind.WALKS)
     return Start(width, left, float(rng.uniform(3.0, 6.0)), paces, float(rng.uniform(-math.pi, math.pi)))
 
 

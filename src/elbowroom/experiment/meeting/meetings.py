@@ -6,8 +6,8 @@ from statistics import median
 from typing import Any
 
 from elbowroom.experiment.meeting.meeting import Met, Start, drawn, load_kernels, meet
-from elbowroom.experiment.meeting.settings import Kind, MeetingSettings
-from elbowroom.experiment.opened import Thing
+from elbowroom.experiment.meeting.settings import MeetingKind, MeetingSettings
+from elbowroom.experiment.opened import Openable
 from elbowroom.experiment.parallel import Processes, Workers
 
 
@@ -15,12 +15,12 @@ from elbowroom.experiment.parallel import Processes, Workers
 class MeetingTask:
     """A meeting that another process can hold."""
 
-    kind: Kind
+    kind: MeetingKind
     start: Start
     live: bool = False
 
     @property
-    def things(self) -> tuple[Thing[Any], ...]:
+    def things(self) -> tuple[Openable[Any], ...]:
         """Nothing that would have to travel."""
         return ()
 
@@ -84,7 +84,7 @@ def as_dict(results: list[WidthResult]) -> dict[str, Any]:
     return {"well": all(result.well for result in results), "corridors": [asdict(result) for result in results]}
 
 
-def _result(kind: Kind, met: list[Met]) -> WidthResult:
+def _result(kind: MeetingKind, met: list[Met]) -> WidthResult:
     return WidthResult(
         kind=kind.value,
         width=met[0].start.width,

@@ -9,7 +9,7 @@ WIDTHS = (0.95, 0.97, 1.0, 1.1, 1.2, 1.35, 1.45, 1.55, 1.6)  # metres
 _NARROWEST, _WIDEST, _MOST = 0.8, 10.0, 10_000
 
 
-class Kind(StrEnum):
+class MeetingKind(StrEnum):
     """What the other does."""
 
     WALKS = "both walk"
@@ -23,7 +23,7 @@ class MeetingSettings:
     widths: tuple[float, ...] = WIDTHS  # metres, of the corridors
     starts: int = 20  # in each, of each kind
     seed: int = 0
-    kinds: tuple[Kind, ...] = tuple(Kind)
+    kinds: tuple[MeetingKind, ...] = tuple(MeetingKind)
     live: bool = False  # plans are made beside playback, as in a session: their answers come as late as they really are
 
     def __post_init__(self) -> None:

@@ -18,14 +18,14 @@ _ROUNDS, _CALLS = 7, 50
 
 
 @dataclass(frozen=True)
-class Cost:
+class ProcessorTime:
     """Microseconds of processor time: the best of several rounds."""
 
     one: float  # a skeleton alone
     each_of_many: float  # of 256 at once
 
 
-def cost(humanoid: Humanoid) -> Cost:
+def cost(humanoid: Humanoid) -> ProcessorTime:
     """Time the posing of walking bodies, feet and carriage included."""
     model = body_model(humanoid)
     roots = np.zeros((MANY, ROOT_STATE))
@@ -34,7 +34,7 @@ def cost(humanoid: Humanoid) -> Cost:
     body = body_of(model.gait)
     states = np.array([living(body, still, beside(model.gait, root), 1.0, np.inf, UNKNOWN) for root in roots])
     postures = np.zeros((MANY, DOF))
-    return Cost(
+    return ProcessorTime(
         _best(lambda: posture_capsules(model, postures[:1], states[:1])),
         _best(lambda: posture_capsules(model, postures, states)) / MANY,
     )

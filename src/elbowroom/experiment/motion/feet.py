@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from elbowroom.body.root import HEIGHT, RISES
 from elbowroom.experiment.motion.borne import Borne, borne, shares
-from elbowroom.experiment.motion.sole import Sole
+from elbowroom.experiment.motion.sole import SolePoints
 from elbowroom.experiment.motion.stance import slides, standing_by_looks, stretches
 from elbowroom.experiment.motion.walked import RATE, Walked
 from elbowroom.jit import exact_kernel
@@ -49,7 +49,7 @@ class FootTrack:
     points: Floats  # (N, P, 3) of its sole, heights those above the ground
     planned: Bools  # (N,)
     seen: Bools  # (N,)
-    flat: Floats  # (P, 2) as in `Sole`
+    flat: Floats  # (P, 2) as in `SolePoints`
     body: Floats  # (N,) how high the body's place is, metres
 
     def clearances(self) -> Floats:
@@ -64,7 +64,7 @@ class FootTrack:
         return np.array(found)
 
 
-def foot_tracks(walked: Walked, soles: Sequence[Sole]) -> tuple[FootTrack, FootTrack]:
+def foot_tracks(walked: Walked, soles: Sequence[SolePoints]) -> tuple[FootTrack, FootTrack]:
     """Left and right foot of a walk, from where it is settled."""
     span, ground = walked.settled(), walked.script.scene.ground
     tracks = []

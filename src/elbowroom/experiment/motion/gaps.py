@@ -22,7 +22,7 @@ _SECONDS = 7.0
 
 
 @dataclass(frozen=True)
-class Passage:
+class PassedGap:
     """How one gap was passed."""
 
     ratio: float  # of the gap to the width of the shoulders
@@ -39,7 +39,7 @@ class Narrow:
 
     shoulders: float  # metres, the width of the shoulders with the arms' tops
     onset: float | None  # the widest gap, in shoulder widths, in which they turn
-    passages: tuple[Passage, ...]
+    passages: tuple[PassedGap, ...]
 
 
 def shoulder_width(humanoid: Humanoid) -> float:
@@ -63,14 +63,14 @@ def walls(width: float) -> Scene:
     return Scene.of(f"gap {width:.3f}", obstacles, finish=(0.0, _AT + 1.5))
 
 
-def pass_gap(humanoid: Humanoid, ratio: float) -> Passage:
+def pass_gap(humanoid: Humanoid, ratio: float) -> PassedGap:
     """Walk through a gap of so many shoulder widths."""
     width, speed = ratio * shoulder_width(humanoid), RootMotionSettings().walk_speed
     hand = strokes((_SECONDS, at_speed(speed)))
     walked = walk(humanoid, Script(f"gap {ratio:g}", walls(width), hand, _SECONDS))
     near = np.abs(walked.roots[:, 1] - _AT) < _NEAR
     passed = bool(walked.roots[-1, 1] > _AT + _NEAR)
-    return Passage(
+    return PassedGap(
         ratio=ratio,
         width=width,
         passed=passed,
@@ -87,12 +87,12 @@ def shoulder_turns(walked: Walked, humanoid: Humanoid) -> Floats:
     return turns
 
 
-def narrow(humanoid: Humanoid, passages: tuple[Passage, ...]) -> Narrow:
+def narrow(humanoid: Humanoid, passages: tuple[PassedGap, ...]) -> Narrow:
     """What the gaps say together."""
     return Narrow(shoulder_width(humanoid), onset(passages), passages)
 
 
-def onset(passages: tuple[Passage, ...]) -> float | None:
+def onset(passages: tuple[PassedGap, ...]) -> float | None:
     """The widest gap in which the shoulders turn, in shoulder widths, between two that were walked by proportion."""
     rows = sorted(((p.ratio, p.turn) for p in passages), reverse=True)
     if not rows or rows[0][1] >= TURNED:

@@ -12,7 +12,7 @@ from elbowroom.body.humanoid import Humanoid
 from elbowroom.experiment.motion import bands
 from elbowroom.experiment.motion.bands import Band, at_least, at_most
 from elbowroom.experiment.motion.borne import Borne
-from elbowroom.experiment.motion.cost import Cost, cost
+from elbowroom.experiment.motion.cost import ProcessorTime, cost
 from elbowroom.experiment.motion.curves import Curves, curves
 from elbowroom.experiment.motion.feet import Feet, FootTrack, feet, foot_tracks
 from elbowroom.experiment.motion.gaps import Narrow, narrow, pass_gap
@@ -57,7 +57,7 @@ class MotionReport:
     gaits: tuple[Gait, ...]  # by speed
     narrow: Narrow | None
     head_lead: float | None  # seconds, at a turn by 90 degrees
-    cost: Cost
+    cost: ProcessorTime
 
     def as_dict(self) -> dict[str, Any]:
         """Settings, figures and bands."""

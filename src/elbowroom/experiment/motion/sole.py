@@ -18,7 +18,7 @@ _BALL = 6  # column of `GaitShape.legs`
 _DIRECTIONS, _SPREAD = 48, 24  # in which the farthest points are taken, and points spread over the whole sole besides
 
 
-class Sole(NamedTuple):
+class SolePoints(NamedTuple):
     """Points of one foot, as its joints carry them."""
 
     carried: Carried
@@ -29,14 +29,14 @@ class Sole(NamedTuple):
         return self.carried.vertices(posed, np.arange(len(posed.positions)))
 
 
-def soles_of(humanoid: Humanoid) -> tuple[Sole, Sole]:
+def soles_of(humanoid: Humanoid) -> tuple[SolePoints, SolePoints]:
     """The left and the right sole: of the avatar's own surface, or of its skeleton where it has none."""
     skin, _ = skin_of(humanoid)
     left, right = (_of_skin(humanoid, skin, side) for side in ("left", "right"))
     return left, right
 
 
-def _of_skin(humanoid: Humanoid, skin: Skin | None, side: str) -> Sole:
+def _of_skin(humanoid: Humanoid, skin: Skin | None, side: str) -> SolePoints:
     skeleton = humanoid.skeleton
     own = [skeleton.index(side + part) for part in ("Foot", "Toes") if skeleton.has(side + part)]
     if skin is None:
@@ -52,9 +52,9 @@ def _of_skin(humanoid: Humanoid, skin: Skin | None, side: str) -> Sole:
     return _sole(skin.carried(mine[kept]), places[kept], _ball(humanoid, side))
 
 
-def _sole(carried: Carried, places: Floats, ball: float) -> Sole:
+def _sole(carried: Carried, places: Floats, ball: float) -> SolePoints:
     """The sole of points with those places (P, 3) in T-pose, of a foot whose toes' joint is so far ahead, metres."""
-    return Sole(carried, np.stack([places[:, 2] - ball, places[:, 1] - places[:, 1].min()], axis=1))
+    return SolePoints(carried, np.stack([places[:, 2] - ball, places[:, 1] - places[:, 1].min()], axis=1))
 
 
 def _ball(humanoid: Humanoid, side: str) -> float:
@@ -83,7 +83,7 @@ def _spread(places: Floats) -> Ints:
     return np.array(chosen)
 
 
-def _of_skeleton(humanoid: Humanoid, side: str) -> Sole:
+def _of_skeleton(humanoid: Humanoid, side: str) -> SolePoints:
     """Heel, ball and tip of the toes, by the bones and the foot's capsule."""
     skeleton, capsules = humanoid.skeleton, humanoid.capsules
     foot = skeleton.index(f"{side}Foot")

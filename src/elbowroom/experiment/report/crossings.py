@@ -14,7 +14,7 @@ from elbowroom.body.pose.kinematics import body_model, posture_capsules
 from elbowroom.control.frame import Frame
 from elbowroom.experiment.crossing import controller_for, run_crossing
 from elbowroom.experiment.crossing_settings import CrossingSettings
-from elbowroom.experiment.opened import Thing
+from elbowroom.experiment.opened import Openable
 from elbowroom.experiment.parallel import Workers
 from elbowroom.experiment.table1.table import Table1
 from elbowroom.experiment.table1.tasks import AvatarFile, NamedScene, open_avatar, open_scene
@@ -48,7 +48,7 @@ class DrawTask:
     settings: CrossingSettings
 
     @property
-    def things(self) -> tuple[Thing[Any], ...]:
+    def things(self) -> tuple[Openable[Any], ...]:
         """Avatar and scene."""
         return AvatarFile(self.avatar), NamedScene(self.scene)
 

@@ -7,7 +7,7 @@ from typing import Any
 
 from elbowroom.experiment.paper_table import TRIALS
 from elbowroom.experiment.report.crossings import DrawnCrossing
-from elbowroom.experiment.report.plots import Figure, figures
+from elbowroom.experiment.report.plots import PlotRow, figures
 from elbowroom.experiment.report.scene_picture import draw_scenes
 from elbowroom.experiment.report.svg import tag
 from elbowroom.experiment.report.tables import canned_table, comparison_table, everything_table
@@ -73,7 +73,7 @@ def _legend(table: Table1) -> str:
     )
 
 
-def _figure(figure: Figure) -> str:
+def _figure(figure: PlotRow) -> str:
     panels = tag("div", *figure.panels, class_="panels")
     return _section(figure.heading, figure.caption, panels)
 

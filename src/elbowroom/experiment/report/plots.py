@@ -21,7 +21,7 @@ _RATE = Axis(0.0, 1.0, ticks=(0.0, 0.5, 1.0), percent=True)
 
 
 @dataclass(frozen=True)
-class Figure:
+class PlotRow:
     """A row of plots with its heading."""
 
     heading: str
@@ -73,7 +73,7 @@ _QUANTITIES = (
 )
 
 
-def figures(table: Table1) -> tuple[Figure, ...]:
+def figures(table: Table1) -> tuple[PlotRow, ...]:
     """All rows of plots."""
     return (*(_figure(table, quantity) for quantity in _QUANTITIES), _planning_times(table))
 
@@ -88,11 +88,11 @@ def scene_title(name: str) -> str:
     return f"Scene {name.upper()}" if len(name) == 1 else name
 
 
-def _figure(table: Table1, quantity: _Quantity) -> Figure:
+def _figure(table: Table1, quantity: _Quantity) -> PlotRow:
     scenes = {name: _series(table, quantity, name) for name in scene_names(table)}
     axis = _axis(quantity, [series for row in scenes.values() for series in row])
     panels = [Panel(scene_title(name), table.settings.queues, axis, row) for name, row in scenes.items()]
-    return Figure(quantity.heading, quantity.caption, tuple(draw(panel, quantity.heading) for panel in panels))
+    return PlotRow(quantity.heading, quantity.caption, tuple(draw(panel, quantity.heading) for panel in panels))
 
 
 def _series(table: Table1, quantity: _Quantity, scene: str) -> tuple[Series, ...]:
@@ -142,7 +142,7 @@ def _log_axis(lowest: float, highest: float) -> Axis:
     return Axis(low, high, log=True, ticks=tuple(10.0**power for power in decades))
 
 
-def _planning_times(table: Table1) -> Figure:
+def _planning_times(table: Table1) -> PlotRow:
     times = {(cell.planner, cell.scene, cell.queue_size): _plan_ms(table, cell) for cell in table.cells}
     known = np.concatenate([values for values in times.values() if len(values)] or [np.ones(1)])
     axis = _log_axis(max(0.1, float(known.min())), float(known.max()))
@@ -159,7 +159,7 @@ def _planning_times(table: Table1) -> Figure:
         "Logarithmic. Everything that the frame which planned had to do. Width is frequency; the bar is the median, "
         "the short line the 99th percentile, the ring the slowest call. The dashed line is one frame at 60 Hz."
     )
-    return Figure(heading, caption, tuple(draw(panel, heading) for panel in panels))
+    return PlotRow(heading, caption, tuple(draw(panel, heading) for panel in panels))
 
 
 def _plan_ms(table: Table1, cell: Cell) -> Floats:

@@ -42,7 +42,7 @@ class Averages:
 
 
 @dataclass(frozen=True)
-class Cost:
+class MillisecondsTaken:
     """Milliseconds that frames or planning calls took, over all trials of a cell."""
 
     count: int
@@ -66,8 +66,8 @@ class Cell:
     realtime_trials: int  # trials that met the paper's criterion
     punctual_trials: int  # trials without a frame later than 1/60 s
     late_frames: int
-    frame_ms: Cost
-    plan_ms: Cost
+    frame_ms: MillisecondsTaken
+    plan_ms: MillisecondsTaken
     least_clearance: float  # metres, over all frames of all trials
 
     @property
@@ -173,5 +173,7 @@ def _per_plan(records: Sequence[Record], name: str) -> Estimate | None:
     return Estimate(sum(checks) / sum(plans), *interval)
 
 
-def _cost(values: Sequence[float]) -> Cost:
-    return Cost(len(values), percentile(values, 50.0), percentile(values, 99.0), max(values, default=float("nan")))
+def _cost(values: Sequence[float]) -> MillisecondsTaken:
+    return MillisecondsTaken(
+        len(values), percentile(values, 50.0), percentile(values, 99.0), max(values, default=float("nan"))
+    )

@@ -12,7 +12,7 @@ from elbowroom.control.controller import Controller
 from elbowroom.experiment.beside import BesideDesk
 from elbowroom.experiment.crossing import DT, controller_for, run_timed_crossing, start_for, warm_up
 from elbowroom.experiment.crossing_settings import CrossingSettings
-from elbowroom.experiment.opened import Thing, opened
+from elbowroom.experiment.opened import Openable, opened
 from elbowroom.experiment.scripted_user import FORWARD
 from elbowroom.experiment.table1.settings import Table1Settings
 from elbowroom.experiment.trial_log import digest
@@ -61,7 +61,7 @@ class CrossingTask:
         )
 
     @property
-    def things(self) -> tuple[Thing[Any], ...]:
+    def things(self) -> tuple[Openable[Any], ...]:
         """Avatar and scene."""
         return AvatarFile(self.avatar), NamedScene(self.scene)
 
@@ -93,7 +93,7 @@ class CannedTask:
         return f"{CANNED} {scene_key(self.scene)} {self.seed}"
 
     @property
-    def things(self) -> tuple[Thing[Any], ...]:
+    def things(self) -> tuple[Openable[Any], ...]:
         """Avatar and scene."""
         return AvatarFile(self.avatar), NamedScene(self.scene)
 

@@ -95,12 +95,12 @@ def read_scene(file: str, name: str) -> dict[str, Any]:
 
 def walk_scene(file: str, name: str, humanoid: str) -> tuple[object, ...]:
     """How the humanoid in a file of `answers.packed` fares in such a scene: the fields of an `UnseenWalk`, in order."""
-    from elbowroom.experiment.unseen_walk import Effort, walk_unseen
+    from elbowroom.experiment.unseen_walk import WalkLimits, walk_unseen
     from elbowroom.server.apart.answers import unpacked
     from elbowroom.world.scene import Scene
 
     scene = Scene.from_dict(read_scene(file, name), name)
-    walk = walk_unseen(unpacked(Path(humanoid).read_bytes()), scene, Effort())
+    walk = walk_unseen(unpacked(Path(humanoid).read_bytes()), scene, WalkLimits())
     return tuple(getattr(walk, field.name) for field in fields(walk))
 
 

@@ -4,7 +4,7 @@ import numpy as np
 
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.errors import InputError
-from elbowroom.export.animation import Animation, Poses, check_length
+from elbowroom.export.animation import Animation, ShownPoses, check_length
 from elbowroom.export.formats import FORMATS, Wishes
 from elbowroom.export.writers import WRITERS, Exported
 from elbowroom.geometry import quaternion
@@ -32,7 +32,7 @@ def save_motion(frames: bytes, humanoid: Humanoid, ending: str) -> Exported:
     return WRITERS[ending](animation, humanoid, FORMATS[ending].layout(Wishes()))
 
 
-def _poses(frames: bytes, humanoid: Humanoid) -> Poses:
+def _poses(frames: bytes, humanoid: Humanoid) -> ShownPoses:
     joints = len(humanoid.skeleton.names)
     size = 4 * (HEAD + 4 * joints)
     if not frames or len(frames) % size or len(frames) > size * MAX_FRAMES:
@@ -42,7 +42,7 @@ def _poses(frames: bytes, humanoid: Humanoid) -> Poses:
         raise InputError("motion: the numbers are out of range, or time goes backwards")
     turns, hips = quaternion.normalize(table[:, HEAD:].reshape(-1, joints, 4)), table[:, 6:9]
     rig = humanoid.rig
-    return Poses(
+    return ShownPoses(
         times=table[:, 0],
         jumps=np.diff(table[:, 1], prepend=table[0, 1]) != 0.0,
         rotations=turns if rig is None else rig.normalised(turns),

@@ -15,7 +15,7 @@ from elbowroom.experiment.gauntlet.place.furnished import FurnishedPlace
 from elbowroom.experiment.gauntlet.place.trial import NO_LEVEL, walk_place_course
 from elbowroom.experiment.gauntlet.tasks import NO_COURSE, CourseWalker, Record
 from elbowroom.experiment.gauntlet.trial_settings import TrialSettings
-from elbowroom.experiment.opened import Thing, opened
+from elbowroom.experiment.opened import Openable, opened
 
 
 @dataclass(frozen=True)
@@ -47,7 +47,7 @@ class PlaceTask:
         return f"place-{self.seed}"
 
     @property
-    def things(self) -> tuple[Thing[Any], ...]:
+    def things(self) -> tuple[Openable[Any], ...]:
         """The avatar, and the place."""
         return (CourseWalker(self.avatar), PlaceCourses(self.place, self.avatar))
 
