@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.dof import ARMS, DofGroup, columns_of, limits
-from elbowroom.body.gait.cycle import smooth
 from elbowroom.body.gait.lowered_hips import hips_lean
+from elbowroom.body.gait.smoothstep import smoothstep
 from elbowroom.body.gait.stride import CLIMB, stride_at
 from elbowroom.jit import exact_kernel
 
@@ -44,5 +44,5 @@ def goals_on_stairs(goals: Floats, states: Floats, scale: float, half_leg: float
         lean = hips_lean(lowering) - hips_lean(out[n, _LOWERING])
         out[n, _LOWERING], out[n, _BEND] = lowering, max(out[n, _BEND] - lean, _LEAST)
         for arm in (_LEFT, _RIGHT):
-            out[n, arm] = min(out[n, arm] + _SPREAD * smooth(abs(climbs) / _SPREADS), _WIDEST)
+            out[n, arm] = min(out[n, arm] + _SPREAD * smoothstep(abs(climbs) / _SPREADS), _WIDEST)
     return out

@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 from elbowroom.body.clips.clip import MotionClip
 from elbowroom.body.clips.clip_data import ClipData, parse_clips
 from elbowroom.body.dof import LOCAL_GROUPS, DofGroup
+from elbowroom.body.gait.smoothstep import smoothstep
 from elbowroom.jit import exact_kernel, inner_exact_kernel
 
 Floats = NDArray[np.float64]
@@ -93,8 +94,7 @@ def swing_into(starts: Floats, cubics: Floats, hanging: Floats, phase: float, sp
     stride on."""
     pace = abs(speed)
     phase += 0.5 if speed < 0.0 else 0.0
-    t = min(max((pace - _CROSSOVER) / _CROSSOVER_WIDTH + 0.5, 0.0), 1.0)
-    single, width = t * t * (3.0 - 2.0 * t), _FULL * (1.0 - np.exp(-pace / _GROWTH))
+    single, width = smoothstep((pace - _CROSSOVER) / _CROSSOVER_WIDTH + 0.5), _FULL * (1.0 - np.exp(-pace / _GROWTH))
     for once in range(2):
         time = phase if once == 1 else 2.0 * phase
         share = width * (single if once == 1 else 1.0 - single)

@@ -13,6 +13,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from elbowroom.body.gait.smoothstep import smoothstep
 from elbowroom.body.gait.stride import CLIMB, STANDARD_LEG, Stride, climbing_stride, stride_at
 from elbowroom.body.gait.tilted_foot import bump, ease_of, own_roll, tilt_foot
 from elbowroom.body.skeleton import Skeleton
@@ -79,13 +80,6 @@ def _measured(skeleton: Skeleton, side: str, reach: tuple[float, float] | None) 
 
 
 @inner_kernel
-def smooth(x: float) -> float:
-    """Smoothstep, 0 below 0 and 1 above 1."""
-    t = min(max(x, 0.0), 1.0)
-    return float(t * t * (3.0 - 2.0 * t))
-
-
-@inner_kernel
 def _hermite(a: float, slope_a: float, b: float, slope_b: float, w: float) -> float:
     """Cubic from `a` to `b` over w in [0, 1]."""
     rest = 1.0 - w
@@ -98,7 +92,7 @@ def _pitch_ahead(u: float, duty: float) -> float:
     if u < duty:
         x = min(max((u / duty - _RISE) / (1.0 - _RISE), 0.0), 1.0)
         rise = x**_ROLL * (1.0 + (_ROLL - _ROLLING) * (1.0 - x))
-        return float(_TOE_OFF * rise - _HEEL_STRIKE * (1.0 - smooth(u / (_FLAT * duty))))
+        return float(_TOE_OFF * rise - _HEEL_STRIKE * (1.0 - smoothstep(u / (_FLAT * duty))))
     rolling = _TOE_OFF * _ROLLING / (duty * (1.0 - _RISE)) * (1.0 - duty)
     return _hermite(_TOE_OFF, rolling, -_HEEL_STRIKE, 0.0, (u - duty) / (1.0 - duty))
 
@@ -108,8 +102,8 @@ def _pitch_back(u: float, duty: float) -> float:
     """Foot pitch when walking backward: toes first, then the flat foot, heel last."""
     strike, lift = 0.37, -0.19
     if u < duty:
-        return strike * (1.0 - smooth(u / (0.3 * duty))) + lift * smooth((u - 0.7 * duty) / (0.3 * duty))
-    return lift + (strike - lift) * smooth((u - duty) / (1.0 - duty))
+        return strike * (1.0 - smoothstep(u / (0.3 * duty))) + lift * smoothstep((u - 0.7 * duty) / (0.3 * duty))
+    return lift + (strike - lift) * smoothstep((u - duty) / (1.0 - duty))
 
 
 @inner_kernel
@@ -208,7 +202,7 @@ def _bob(stride: Stride, phase: float) -> float:
 @helper
 def _highest(legs: Floats, stride: Stride, foot: Floats) -> float:
     """How far the hips are below T-pose where they are highest, so that feet reach the ground; `foot` is scratch."""
-    stretch = _STRETCH + (_STRIDE_STRETCH - _STRETCH) * smooth(stride.speed / stride.scale)
+    stretch = _STRETCH + (_STRIDE_STRETCH - _STRETCH) * smoothstep(stride.speed / stride.scale)
     low = 0.0
     for side in range(2):
         for u in (0.0, 0.5 * stride.duty, 0.7 * stride.duty, 0.85 * stride.duty, stride.duty * (1.0 - 1e-9), 0.96):

@@ -8,8 +8,9 @@ people's do. That is part of the foot's state, so it swings on from there; the w
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.body.gait.cycle import smooth, walk_into
+from elbowroom.body.gait.cycle import walk_into
 from elbowroom.body.gait.foot_state import LIFT, PITCH, ROLLING, SWING, YAW, X, Z
+from elbowroom.body.gait.smoothstep import smoothstep
 from elbowroom.body.gait.stride import CLIMB
 from elbowroom.body.gait.tilted_foot import ease_of, tilt_foot
 from elbowroom.body.root import FOOT, RISES, ROOT_STATE
@@ -78,7 +79,7 @@ def _let_rise(legs: Floats, side: int, drop: float, climbs: float, lie: tuple[fl
     foot, length = np.empty(6), legs[side, _THIGH] + legs[side, _SHIN]
     tilt_foot(legs, side, (flat[X], flat[Z], flat[YAW]), (flat[PITCH], flat[LIFT]), ease_of(1.0, 0.0), foot)
     hip = (legs[side, _HIP], legs[side, _HIP + 1] - drop - lie[0], legs[side, _HIP + 2])
-    much, hip = climbs * smooth(behind(foot, hip) / _BEHIND), _from_ground(flat, lie[1], hip)
+    much, hip = climbs * smoothstep(behind(foot, hip) / _BEHIND), _from_ground(flat, lie[1], hip)
     nearer = much * too_far(distance(foot, hip) - _BENT * length, _SOFTLY * length)
     if nearer > 0.0:
         flat[PITCH] = raise_heel(legs, side, flat, hip, nearer, _STEEP, foot)
@@ -87,7 +88,7 @@ def _let_rise(legs: Floats, side: int, drop: float, climbs: float, lie: tuple[fl
 @inner_exact_kernel
 def let_heels_rise(legs: Floats, scale: float, before: Floats, dt: float, row: Floats) -> None:
     """Let heels rise of feet that stand in a row (WITH_FEET or more,) of who climbs, `dt` after the row `before`."""
-    climbs, drops = smooth(row[CLIMB] / _CLIMBS), np.empty(1)
+    climbs, drops = smoothstep(row[CLIMB] / _CLIMBS), np.empty(1)
     if climbs <= 0.0 or dt <= 0.0:
         return
     walk_into(legs, scale, row.reshape((1, len(row))), np.empty((0, 2, 6)), drops, np.empty(6))

@@ -28,6 +28,7 @@ from elbowroom.body.gait.carriage import (
 from elbowroom.body.gait.cycle import GaitShape
 from elbowroom.body.gait.manner import PLAIN, Manner
 from elbowroom.body.gait.own_stride import PUBLISHED, OwnStride, carry_as_recorded
+from elbowroom.body.gait.smoothstep import smoothstep
 from elbowroom.body.gait.stride import Stride, stride_at
 from elbowroom.body.root import SHOWN, WITH_FEET
 from elbowroom.jit import brief_exact_kernel, helper, inner_exact_kernel
@@ -64,12 +65,6 @@ _STRAIGHT = 1e-3  # radians: less is none
 
 
 @inner_exact_kernel
-def _smooth(x: float) -> float:
-    t = min(max(x, 0.0), 1.0)
-    return t * t * (3.0 - 2.0 * t)
-
-
-@inner_exact_kernel
 def _wave(phase: float, at: float) -> float:
     return math.cos(2.0 * math.pi * (phase - at))
 
@@ -94,7 +89,7 @@ def _walk(stride: Stride, phase: float, out: Floats) -> float:
     out[AHEAD] *= scale * much * min(speed, 1.5)
     out[TURN] = -way * much * _radians(_PELVIS_TURN, speed) * _wave(phase, 0.0)
     out[LIST] = (much + _LIST_ELSE * rest) * _radians(_PELVIS_LIST, speed) * _wave(phase, _LIST_AT)
-    against = _smooth((speed - _TOGETHER) / (_AGAINST - _TOGETHER))
+    against = smoothstep((speed - _TOGETHER) / (_AGAINST - _TOGETHER))
     out[CHEST_TURN] = way * much * against * _radians(_CHEST_TURN, speed) * _wave(phase, _CHEST_AT)
     out[CHEST_LIST] = _CHEST_LIST * out[LIST]
     out[CHEST_BEND] = much * min(speed, _FASTEST) * (way * _LEAN + _NODS * _wave(2.0 * phase, 2.0 * _NODS_AT))
@@ -168,18 +163,18 @@ def live(body: Body, before: Floats, dt: float, room: float, coming: Floats, fac
     The head is planned to face so many radians to the left of the heading.
     """
     rests = abs(out[3]) + abs(out[4]) + abs(out[5]) < _STILL
-    goal = _smooth((min(room, 1.0) - _NEAR) / (_FREE - _NEAR))
+    goal = smoothstep((min(room, 1.0) - _NEAR) / (_FREE - _NEAR))
     out[SHARE] = _approached(before[SHARE], goal, _RISE * dt, _FALL * dt) if room >= 0.0 else 0.0
     out[REST] = _approached(before[REST], 1.0 if rests else 0.0, _TO_REST * dt, _FROM_REST * dt)
     out[CLOCK] = before[CLOCK] + (dt if rests else 0.0)
     for i in range(POSING):
         out[WITH_FEET + i] = 0.0
-    share = _smooth(out[SHARE])
+    share = smoothstep(out[SHARE])
     if share > 0.0:
         part = _walk(stride_at(body.scale, out), out[6], out)
         if body.own.speed > 0.0:
             carry_as_recorded(body.own, part, out[3], body.scale, out[6], out)
-        _idle(body.scale, _smooth(out[REST]), out[CLOCK], out)
+        _idle(body.scale, smoothstep(out[REST]), out[CLOCK], out)
         for i in range(POSING):
             out[WITH_FEET + i] *= share * body.amounts[i]
         out[CHEST_BEND] += share * body.amounts[POSING]

@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.body.gait.cycle import smooth
+from elbowroom.body.gait.smoothstep import smoothstep
 from elbowroom.jit import inner_kernel, kernel
 
 Floats = NDArray[np.float64]
@@ -18,7 +18,7 @@ _SETBACK = 0.5  # how far lowered hips go back, against how far they go down; le
 @inner_kernel
 def hips_lean(lowering: float) -> float:
     """How far lowered hips lean forward, radians."""
-    return _LEAN * smooth(lowering / _LEANING)
+    return _LEAN * smoothstep(lowering / _LEANING)
 
 
 @inner_kernel

@@ -13,11 +13,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.gait.carriage import carried_hip
-from elbowroom.body.gait.cycle import smooth, too_high, walk_into
+from elbowroom.body.gait.cycle import too_high, walk_into
 from elbowroom.body.gait.foot_state import LIFT, PITCH, SWING, YAW, X, Z
 from elbowroom.body.gait.heels import Hip, behind, distance, raise_heel, too_far
 from elbowroom.body.gait.lowered_hips import hips_sink
 from elbowroom.body.gait.rises import STRETCH, is_uneven, raise_foot
+from elbowroom.body.gait.smoothstep import smoothstep
 from elbowroom.body.gait.tilted_foot import ease_of, tilt_foot
 from elbowroom.body.root import FOOT, RISES, ROOT_STATE
 from elbowroom.jit import helper, kernel
@@ -37,7 +38,7 @@ _LIFTED, _LANDS = 0.3, 30  # of its swing, from which on it is; the power of it 
 @helper
 def _trails(foot: Floats, hip: Hip) -> float:
     """How much a foot is one that is left behind, 0 to 1."""
-    return smooth((behind(foot, hip) - _BEHIND) / _BEHIND)
+    return smoothstep((behind(foot, hip) - _BEHIND) / _BEHIND)
 
 
 @helper
@@ -52,7 +53,7 @@ def _let_rise(legs: Floats, side: int, flat: Floats, hip: Hip, foot: Floats) -> 
 @helper
 def _lift(legs: Floats, side: int, swung: float, hip: Hip, foot: Floats) -> None:
     """Lift a swinging foot (6,) whose leg is too short; as it lands, and has just left the ground, the hips give."""
-    length, share = legs[side, _THIGH] + legs[side, _SHIN], smooth(swung / _LIFTED) * (1.0 - swung**_LANDS)
+    length, share = legs[side, _THIGH] + legs[side, _SHIN], smoothstep(swung / _LIFTED) * (1.0 - swung**_LANDS)
     foot[1] += share * min(too_far(too_high(foot, hip, _STRETCH * length), _SOFTLY * length), _UP * length)
 
 

@@ -8,6 +8,7 @@ where `living` carries them. Aside, backward and in turns on the spot feet roll 
 """
 
 from elbowroom.body.gait.cycle import roll_of
+from elbowroom.body.gait.smoothstep import smoothstep
 from elbowroom.body.gait.stride import Stride
 from elbowroom.jit import helper, inner_kernel
 
@@ -41,8 +42,7 @@ def _pitch(u: float, duty: float) -> float:
     if u < duty:
         x = min(max((u / duty - _RISE) / (1.0 - _RISE), 0.0), 1.0)
         rolling = _ROLLING / _TOE_OFF * duty / (1.0 - duty) * (1.0 - _RISE)  # as x grows
-        down = min(u / (_FLAT * duty), 1.0)
-        struck = 1.0 - down * down * (3.0 - 2.0 * down)
+        struck = 1.0 - smoothstep(u / (_FLAT * duty))
         return float(_TOE_OFF * x**_ROLL * (1.0 + (_ROLL - rolling) * (1.0 - x)) - _STRIKE * struck)
     w = (u - duty) / (1.0 - duty)
     rest = 1.0 - w

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from elbowroom.body.dof import DOF
 from elbowroom.body.gait.cycle import stood_places
+from elbowroom.body.gait.smoothstep import smoothstep
 from elbowroom.body.pose.kinematics import BodyModel, CapsuleSet, leg_capsules, posture_capsules
 from elbowroom.body.root import HEIGHT, RISES, ROOT_STATE
 from elbowroom.by_reference import by_reference
@@ -157,21 +158,15 @@ class Footing:
 
 
 @helper
-def _eased(x: float) -> float:
-    t = min(max(x, 0.0), 1.0)
-    return t * t * (3.0 - 2.0 * t)
-
-
-@helper
 def _uneased(y: float) -> float:
-    """Where `_eased` is `y`."""
+    """Where `smoothstep` is `y`."""
     return 0.5 - math.sin(math.asin(1.0 - 2.0 * min(max(y, 0.0), 1.0)) / 3.0)
 
 
 @helper
 def _climbed(w: float, rise: float) -> float:
     """How much of the way up or down it has gone by then: up early, down late."""
-    return _eased(w / _UP) if rise > 0.0 else _eased((w - _DOWN) / (1.0 - _DOWN))
+    return smoothstep(w / _UP) if rise > 0.0 else smoothstep((w - _DOWN) / (1.0 - _DOWN))
 
 
 @helper
@@ -249,7 +244,7 @@ def _lifted(overs: Floats, rise: float, top: float, over: float, w: float) -> fl
             up = min(up, (_TIMES[k] - early) / _uneased((overs[k] + 0.9 * over) / top))
         if overs[k] > rise + _LEVEL:
             down = min(down, (1.0 - _TIMES[k] - early) / _uneased((overs[k] + 0.9 * over - rise) / (top - rise)))
-    risen, sunk = _eased(w / max(up, _QUICKEST)), _eased((1.0 - w) / max(down, _QUICKEST))
+    risen, sunk = smoothstep(w / max(up, _QUICKEST)), smoothstep((1.0 - w) / max(down, _QUICKEST))
     return min(top * risen, rise + (top - rise) * sunk)
 
 

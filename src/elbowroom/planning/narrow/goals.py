@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.dof import ARMS, DofGroup, columns_of
+from elbowroom.body.gait.smoothstep import smoothstep
 from elbowroom.body.root import HEIGHT
 from elbowroom.jit import exact_kernel, helper, inner_exact_kernel
 from elbowroom.planning.gaze import keeping_gaze
@@ -86,8 +87,7 @@ def _asked(places: Floats, figure: Figure, state: Floats) -> tuple[float, float]
     for k in range(places.shape[0]):
         dx, dz, half = places[k, 0] - state[0], places[k, 1] - state[1], places[k, 2]
         over = (_BEFORE if dx * x + dz * z >= 0.0 else _AFTER) - _HERE
-        near = min(max(1.0 - (np.hypot(dx, dz) - _HERE) / over, 0.0), 1.0)
-        share = near * near * (3.0 - 2.0 * near)
+        share = smoothstep(1.0 - (np.hypot(dx, dz) - _HERE) / over)
         turn = (figure.broad + MARGIN - half) / max(figure.broad - figure.slim, _USE)
         draw = (figure.swinging + MARGIN - half) / max(figure.swinging - figure.broad, _USE)
         turned = max(turned, share * min(max(turn, 0.0), 1.0))
