@@ -190,7 +190,7 @@ def test_who_crouches_keeps_the_feet_where_they_were(motion: tuple[float, float,
 
 def middle_of_hips(model: BodyModel, q: Floats, root: Floats) -> Floats:
     """The middle between the joints of the legs (3,) in the root frame."""
-    middle = model.offsets[model.figure.legs[:, 0]].mean(axis=0)
+    middle = model.offsets[model.tree.legs[:, 0]].mean(axis=0)
     turned, hips = kinematics.joint_pose(model, q, root)
     place: Floats = hips + quaternion.rotate(turned[0], middle)
     return place

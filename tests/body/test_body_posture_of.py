@@ -22,7 +22,7 @@ def random_posture(rng: np.random.Generator) -> np.ndarray:
 def test_posing_and_back_gives_the_same_configuration() -> None:
     humanoid = Humanoid.default()
     model, skeleton = body_model(humanoid), humanoid.skeleton
-    chest = model.figure.chest
+    chest = model.tree.chest
     rng = np.random.default_rng(1)
     for _ in range(200):
         q = random_posture(rng)

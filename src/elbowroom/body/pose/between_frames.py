@@ -61,7 +61,7 @@ def frame_pair(roots: Both, first: tuple[Floats, Floats], second: tuple[Floats, 
 def capsules_on(body: WholeBody, roots: Floats, joints: Floats, hips: Floats) -> Floats32:
     """The capsules (C, 6, N) in the world for root states (N, 7 or more) and `posed_joints` (N, J, 4), (N, 3) there."""
     by = taken_apart(body)
-    return pose_joints(by.figure, by.capsules, roots, joints, hips)
+    return pose_joints(by.tree, by.capsules, roots, joints, hips)
 
 
 @inner_exact_kernel
@@ -91,7 +91,7 @@ def speeds_between(body: WholeBody, frames: FramePair, axes: Floats32) -> Floats
     `axes` (C, 6, 2) are those in both frames, as seen from one place.
     """
     by, speeds = taken_apart(body), np.empty(len(axes))
-    parents, offsets, all_ends, joints = by.figure.parents, by.figure.offsets, by.capsules.ends, by.capsules.joints
+    parents, offsets, all_ends, joints = by.tree.parents, by.tree.offsets, by.capsules.ends, by.capsules.joints
     way = np.empty(6)
     for c in range(len(speeds)):
         reach, moved = 0.0, 0.0

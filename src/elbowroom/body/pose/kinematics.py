@@ -21,8 +21,18 @@ from elbowroom.body.gait.posed_feet import posed_feet
 from elbowroom.body.gait.rises import raise_feet
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.made_once import made_once
-from elbowroom.body.pose import posing
+from elbowroom.body.pose.chain_posing import pose_chain
 from elbowroom.body.pose.hands import relaxed_rotations
+from elbowroom.body.pose.joint_tree import (
+    Arm,
+    CapsuleChain,
+    Chain,
+    JointTree,
+    SpineColumn,
+    arms_together,
+    columns_together,
+)
+from elbowroom.body.pose.pelvis import place_pelvis
 from elbowroom.body.pose.whole_body import PosedBy, WholeBody, posed_capsules, posed_joints, posed_legs, whole_body
 from elbowroom.body.root import ROOT_STATE
 from elbowroom.body.skeleton import Skeleton
@@ -40,7 +50,7 @@ class CapsuleSet(NamedTuple):
 
     indices: Indices  # (C,) into the humanoid's capsules
     radii: NDArray[np.float32]  # (C,) metres
-    posed: posing.CapsuleChain
+    posed: CapsuleChain
 
     @property
     def joints(self) -> Indices:
@@ -51,30 +61,30 @@ class CapsuleSet(NamedTuple):
 class BodyModel(NamedTuple):
     """All that kinematics needs of a humanoid, as arrays; made once by `body_model`."""
 
-    figure: posing.Figure  # its joints, and what turns them
+    tree: JointTree  # its joints, and what turns them
     leg_rest: Floats  # (2, 9) see `legs.leg_rest`
     gait: GaitShape
     body: CapsuleSet  # every capsule, in the humanoid's order
     whole: WholeBody  # all of that, for kernels
     lower: WholeBody  # the same with the capsules of pelvis and legs alone
     groups: dict[DofGroup, CapsuleSet]
-    chains: dict[DofGroup, posing.Chain]  # of the local groups
-    trunk: tuple[posing.Chain, CapsuleSet]  # the waist with all that follows it
+    chains: dict[DofGroup, Chain]  # of the local groups
+    trunk: tuple[Chain, CapsuleSet]  # the waist with all that follows it
 
     @property
     def parents(self) -> Indices:
         """The parent (J,) of each joint."""
-        return self.figure.parents
+        return self.tree.parents
 
     @property
     def offsets(self) -> Floats:
         """Each joint's place (J, 3) from its parent in T-pose; for the hips their place in the root frame."""
-        return self.figure.offsets
+        return self.tree.offsets
 
     @property
     def base(self) -> Floats:
         """Local rotations (J, 4) of the joints that do not move: relaxed fingers, else identity."""
-        return self.figure.base
+        return self.tree.base
 
     @property
     def roots(self) -> CapsuleSet:
@@ -93,25 +103,25 @@ def body_model(humanoid: Humanoid) -> BodyModel:
     parents = np.ascontiguousarray(skeleton.parents, np.int64)
     rest = np.ascontiguousarray(skeleton.positions, np.float64)
     gait = gait_shape(skeleton, humanoid.soles)
-    figure = posing.Figure(
+    tree = JointTree(
         base=relaxed_rotations(skeleton),
         parents=parents,
         offsets=rest - np.where(parents[:, None] >= 0, rest[parents], 0.0),
-        columns=posing.columns_together([_column(skeleton, group) for group in LOCAL_GROUPS if _is_column(group)]),
-        arms=posing.arms_together([_arm(skeleton, group) for group in ARMS]),
+        columns=columns_together([_column(skeleton, group) for group in LOCAL_GROUPS if _is_column(group)]),
+        arms=arms_together([_arm(skeleton, group) for group in ARMS]),
         legs=np.array([_joints(skeleton, [side + bone for bone in _LEG_BONES]) for side in _SIDES]),
         chest=_end(skeleton, DofGroup.WAIST),
     )
-    chains = {group: _chain(skeleton, capsules, figure, group, gait.half_leg) for group in LOCAL_GROUPS}
+    chains = {group: _chain(skeleton, capsules, tree, group, gait.half_leg) for group in LOCAL_GROUPS}
     legs, every, rest_of_legs = capsules.of(DofGroup.ROOT), np.arange(len(capsules.names)), leg_rest(skeleton)
     roots, body = (_capsule_set(capsules, own, _posed(skeleton, capsules, own, 0)) for own in (legs, every))
     sets = {group: _set_of_chain(capsules, capsules.of(group), chain) for group, chain in chains.items()}
     trunk = np.sort(np.concatenate([capsules.of(g) for g in (DofGroup.WAIST, *followers_of(DofGroup.WAIST))]))
     column = _following_column(skeleton, DofGroup.WAIST)
-    whole = _chain_of(skeleton, capsules, figure, DofGroup.WAIST, gait.half_leg, trunk, column)
-    by = PosedBy(figure, body.posed, rest_of_legs, gait.legs, gait.scale, gait.half_leg)
+    whole = _chain_of(skeleton, capsules, tree, DofGroup.WAIST, gait.half_leg, trunk, column)
+    by = PosedBy(tree, body.posed, rest_of_legs, gait.legs, gait.scale, gait.half_leg)
     return BodyModel(
-        figure=figure,
+        tree=tree,
         leg_rest=rest_of_legs,
         gait=gait,
         body=body,
@@ -136,14 +146,14 @@ def _end(skeleton: Skeleton, group: DofGroup) -> int:
     return next(skeleton.index(bone) for bone in reversed(group.value.bones) if skeleton.has(bone))
 
 
-def _column(skeleton: Skeleton, group: DofGroup) -> posing.Column:
+def _column(skeleton: Skeleton, group: DofGroup) -> SpineColumn:
     spec = group.value
     present = [(bone, share) for bone, share in zip(spec.bones, spec.shares, strict=True) if skeleton.has(bone)]
     shares = np.array([share for _, share in present])
-    return posing.Column(_joints(skeleton, [bone for bone, _ in present]), shares / shares.sum(), group.at.start)
+    return SpineColumn(_joints(skeleton, [bone for bone, _ in present]), shares / shares.sum(), group.at.start)
 
 
-def _following_column(skeleton: Skeleton, group: DofGroup) -> posing.Column:
+def _following_column(skeleton: Skeleton, group: DofGroup) -> SpineColumn:
     """A column with the joints of the groups that follow it: they turn back by equal parts."""
     column = _column(skeleton, group)
     joints, shares = [column.joints], [column.shares]
@@ -151,46 +161,44 @@ def _following_column(skeleton: Skeleton, group: DofGroup) -> posing.Column:
         present = [bone for bone in other.value.bones if skeleton.has(bone)]
         joints.append(_joints(skeleton, present))
         shares.append(np.full(len(present), -other.value.undoes / len(present)))
-    return posing.Column(np.concatenate(joints), np.concatenate(shares), column.first)
+    return SpineColumn(np.concatenate(joints), np.concatenate(shares), column.first)
 
 
-def _arm(skeleton: Skeleton, group: DofGroup) -> posing.Arm:
+def _arm(skeleton: Skeleton, group: DofGroup) -> Arm:
     mirror = -1.0 if group.label.startswith("right") else 1.0
-    return posing.Arm(_joints(skeleton, group.value.bones), mirror, group.at.start)
+    return Arm(_joints(skeleton, group.value.bones), mirror, group.at.start)
 
 
-def _chain(
-    skeleton: Skeleton, capsules: Capsules, figure: posing.Figure, group: DofGroup, half_leg: float
-) -> posing.Chain:
+def _chain(skeleton: Skeleton, capsules: Capsules, tree: JointTree, group: DofGroup, half_leg: float) -> Chain:
     """The joints of a local group, down to the one that its children hang on."""
     column = _column(skeleton, DofGroup.WAIST if group.is_arm else group)
-    return _chain_of(skeleton, capsules, figure, group, half_leg, capsules.of(group), column)
+    return _chain_of(skeleton, capsules, tree, group, half_leg, capsules.of(group), column)
 
 
 def _chain_of(
     skeleton: Skeleton,
     capsules: Capsules,
-    figure: posing.Figure,
+    tree: JointTree,
     group: DofGroup,
     half_leg: float,
     indices: Indices,
-    column: posing.Column,
-) -> posing.Chain:
+    column: SpineColumn,
+) -> Chain:
     """The joints that a column or an arm turns, and those that carry the capsules at `indices`."""
     assert group.parent is not None
     start, end = _end(skeleton, group.parent), _end(skeleton, group)
     carries = any(other.parent is group for other in DofGroup)
     posed = _posed(skeleton, capsules, indices, start, [end] if carries else [])
     arm = _arm(skeleton, group if group.is_arm else ARMS[0])
-    return posing.Chain(
-        figure.base, figure.parents, figure.offsets, posed.order, posed.joints, posed.ends,
-        start, end, carries, group.is_arm, column, arm, half_leg, -figure.offsets[figure.legs[:, 0]].mean(axis=0)[1:],
+    return Chain(
+        tree.base, tree.parents, tree.offsets, posed.order, posed.joints, posed.ends,
+        start, end, carries, group.is_arm, column, arm, half_leg, -tree.offsets[tree.legs[:, 0]].mean(axis=0)[1:],
     )  # fmt: skip
 
 
 def _posed(
     skeleton: Skeleton, capsules: Capsules, indices: Indices, start: int, also: Sequence[int] = ()
-) -> posing.CapsuleChain:
+) -> CapsuleChain:
     """The capsules at `indices` and the joints between joint `start` and them (and those in `also`)."""
     joints = capsules.joints[indices]
     needed: set[int] = set()
@@ -200,18 +208,18 @@ def _posed(
             needed.add(at)
             at = int(skeleton.parents[at])
     ends = np.concatenate([capsules.starts[indices], capsules.ends[indices]], axis=1)
-    return posing.CapsuleChain(
+    return CapsuleChain(
         np.array(sorted(needed), np.int64),
         np.ascontiguousarray(joints, np.int64),
         np.ascontiguousarray(ends, np.float64),
     )
 
 
-def _set_of_chain(capsules: Capsules, indices: Indices, chain: posing.Chain) -> CapsuleSet:
-    return _capsule_set(capsules, indices, posing.CapsuleChain(chain.order, chain.joints, chain.ends))
+def _set_of_chain(capsules: Capsules, indices: Indices, chain: Chain) -> CapsuleSet:
+    return _capsule_set(capsules, indices, CapsuleChain(chain.order, chain.joints, chain.ends))
 
 
-def _capsule_set(capsules: Capsules, indices: Indices, posed: posing.CapsuleChain) -> CapsuleSet:
+def _capsule_set(capsules: Capsules, indices: Indices, posed: CapsuleChain) -> CapsuleSet:
     return CapsuleSet(np.asarray(indices, np.int64), capsules.radii[indices].astype(np.float32), posed)
 
 
@@ -278,13 +286,13 @@ def group_capsules(model: BodyModel, group: DofGroup, configurations: ArrayLike)
 
     That is the pelvis frame for the waist, the chest frame for the groups that hang on the waist.
     """
-    return posing.pose_chain(model.chains[group], _rows(configurations, group.size))[0]
+    return pose_chain(model.chains[group], _rows(configurations, group.size))[0]
 
 
 def chest_frames(model: BodyModel, waist: ArrayLike) -> tuple[Floats, Floats]:
     """Positions (N, 3) and rotations (N, 4) of the last spine joint in the pelvis frame for waists (N, 3)."""
     group = DofGroup.WAIST
-    _, positions, rotations = posing.pose_chain(model.chains[group], _rows(waist, group.size))
+    _, positions, rotations = pose_chain(model.chains[group], _rows(waist, group.size))
     return positions, rotations
 
 
@@ -292,4 +300,4 @@ def pelvis_frames(model: BodyModel, roots: ArrayLike) -> tuple[Floats, Floats]:
     """Positions (N, 3) and rotations (N, 4) of the pelvis frame in the world for root states (N, 7)."""
     states = _states(roots)
     _, drops = foot_poses(model.gait.legs, model.gait.scale, states)
-    return posing.place_pelvis(model.offsets[0], states, np.stack([drops, np.zeros(len(drops))], axis=1))
+    return place_pelvis(model.offsets[0], states, np.stack([drops, np.zeros(len(drops))], axis=1))

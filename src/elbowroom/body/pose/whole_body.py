@@ -15,7 +15,8 @@ from elbowroom.body.gait.legs import leg_rotations
 from elbowroom.body.gait.lowered_hips import hips_sinks
 from elbowroom.body.gait.posed_feet import posed_feet
 from elbowroom.body.gait.rises import raise_feet
-from elbowroom.body.pose import posing
+from elbowroom.body.pose.joint_tree import Arms, CapsuleChain, JointTree, SpineColumns
+from elbowroom.body.pose.posing import hips_shift, pose_body, pose_legs, pose_local
 from elbowroom.body.root import ROOT_STATE
 from elbowroom.jit import brief_exact_kernel, exact_kernel, helper, inner_exact_kernel
 
@@ -29,8 +30,8 @@ _PARTS = 8  # cuts of the numbers: so many come before those of the places
 class PosedBy(NamedTuple):
     """What posing every capsule needs of a `BodyModel`, under the names that these things have there."""
 
-    figure: posing.Figure
-    capsules: posing.CapsuleChain
+    tree: JointTree
+    capsules: CapsuleChain
     leg_rest: Floats
     gait_legs: Floats
     scale: float
@@ -49,13 +50,13 @@ class WholeBody(NamedTuple):
 
 def whole_body(by: PosedBy) -> WholeBody:
     """The same for kernels, in the order in which `taken_apart` takes it."""
-    figure, capsules, columns, arms = by.figure, by.capsules, by.figure.columns, by.figure.arms
+    tree, capsules, columns, arms = by.tree, by.capsules, by.tree.columns, by.tree.arms
     numbers = [
-        figure.base, figure.offsets, columns.shares, arms.mirrors, capsules.ends, by.leg_rest, np.array([by.half_leg]),
+        tree.base, tree.offsets, columns.shares, arms.mirrors, capsules.ends, by.leg_rest, np.array([by.half_leg]),
     ]  # fmt: skip
     places = [
-        figure.parents, columns.joints, columns.begins, columns.first, arms.joints, arms.first, figure.legs,
-        np.array([figure.chest]), capsules.order, capsules.joints,
+        tree.parents, columns.joints, columns.begins, columns.first, arms.joints, arms.first, tree.legs,
+        np.array([tree.chest]), capsules.order, capsules.joints,
     ]  # fmt: skip
     cuts = [np.cumsum([0, *(part.size for part in parts)]) for parts in (numbers, places)]
     return WholeBody(
@@ -82,19 +83,17 @@ def taken_apart(body: WholeBody) -> PosedBy:
     """The parts that were put together by `whole_body`."""
     base, offsets, ends, rest = _numbers(body, 0), _numbers(body, 1), _numbers(body, 4), _numbers(body, 5)
     arms, legs = _places(body, 4), _places(body, 6)
-    figure = posing.Figure(
+    tree = JointTree(
         base.reshape((len(base) // 4, 4)),
         _places(body, 0),
         offsets.reshape((len(offsets) // 3, 3)),
-        posing.Columns(_places(body, 1), _numbers(body, 2), _places(body, 2), _places(body, 3)),
-        posing.Arms(arms.reshape((len(arms) // 3, 3)), _numbers(body, 3), _places(body, 5)),
+        SpineColumns(_places(body, 1), _numbers(body, 2), _places(body, 2), _places(body, 3)),
+        Arms(arms.reshape((len(arms) // 3, 3)), _numbers(body, 3), _places(body, 5)),
         legs.reshape((2, len(legs) // 2)),
         _places(body, 7)[0],
     )
-    capsules = posing.CapsuleChain(_places(body, 8), _places(body, 9), ends.reshape((len(ends) // 6, 6)))
-    return PosedBy(
-        figure, capsules, rest.reshape((2, len(rest) // 2)), body.gait_legs, body.scale, _numbers(body, 6)[0]
-    )
+    capsules = CapsuleChain(_places(body, 8), _places(body, 9), ends.reshape((len(ends) // 6, 6)))
+    return PosedBy(tree, capsules, rest.reshape((2, len(rest) // 2)), body.gait_legs, body.scale, _numbers(body, 6)[0])
 
 
 @helper
@@ -117,10 +116,10 @@ def posed_joints(body: WholeBody, q: Floats, root: Floats) -> tuple[Floats, Floa
     """
     by, rows = taken_apart(body), root.reshape((1, len(root)))
     legs, sinks = _lower_body(by, rows, q[LOWERING : LOWERING + 1].copy())
-    x, y, z = posing.hips_shift(by.figure, root, sinks[0, 2])
-    rest = by.figure.offsets[0]
+    x, y, z = hips_shift(by.tree, root, sinks[0, 2])
+    rest = by.tree.offsets[0]
     hips = np.array([rest[0] + x, rest[1] + y - sinks[0, 0], rest[2] + z - sinks[0, 1]])
-    return posing.pose_local(by.figure, q, legs[0], root, sinks[0, 2]), hips
+    return pose_local(by.tree, q, legs[0], root, sinks[0, 2]), hips
 
 
 @inner_exact_kernel
@@ -131,7 +130,7 @@ def posed_body(body: WholeBody, q: Floats, roots: Floats) -> tuple[Segments, Flo
     """
     by = taken_apart(body)
     legs, sinks = _lower_body(by, roots, q[:, LOWERING].copy())
-    return posing.pose_body(by.figure, by.capsules, q, roots, legs, sinks)
+    return pose_body(by.tree, by.capsules, q, roots, legs, sinks)
 
 
 @exact_kernel
@@ -148,4 +147,4 @@ def posed_legs(body: WholeBody, roots: Floats, lowerings: Floats) -> Segments:
     """
     by = taken_apart(body)
     legs, sinks = _lower_body(by, roots, lowerings)
-    return posing.pose_legs(by.figure, by.capsules, roots, legs, sinks)
+    return pose_legs(by.tree, by.capsules, roots, legs, sinks)

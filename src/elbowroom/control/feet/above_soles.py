@@ -35,7 +35,7 @@ class AboveSoles:
         legs = model.roots.indices
         own = np.flatnonzero(np.isin(legs, lifted))
         self.legs = ShownLegs(model.lower, model.roots.radii, self.body.sides[legs], own)
-        shins = np.isin(model.body.joints, model.figure.legs[:, 1:])
+        shins = np.isin(model.body.joints, model.tree.legs[:, 1:])
         # The capsules that count for how hips live.
         self.carried: list[int] = np.flatnonzero(~(shins & (not self.footing.plain))).tolist()
 
@@ -54,7 +54,7 @@ class AboveSoles:
         """Which capsules keep above which sole, as in `ShownBody`."""
         first = 1 if not self.footing.plain and _shins_stay_over(model) else 2
         sides = np.full(len(model.body.radii), OTHERS)
-        for side, leg in enumerate(model.figure.legs):
+        for side, leg in enumerate(model.tree.legs):
             sides[np.isin(model.body.joints, leg[first:])] = side
         return sides
 
@@ -63,6 +63,6 @@ def _shins_stay_over(model: BodyModel) -> bool:
     """Whether shins keep above the ground in strides of all kinds on the plane."""
     roots, drawn = np.zeros((_STRIDES, ROOT_STATE)), evenly_spread(_STRIDES, 4)
     roots[:, 3:7] = _LEAST + drawn * (_MOST - _LEAST)
-    shins = np.isin(model.roots.joints, model.figure.legs[:, 1])
+    shins = np.isin(model.roots.joints, model.tree.legs[:, 1])
     lowest = leg_capsules(model, roots)[shins][:, [1, 4]].min(axis=1) - model.roots.radii[shins, None]
     return bool(lowest.min() > _APART)

@@ -130,7 +130,7 @@ class Footing:
 
     @cached_property
     def _feet_of(self) -> tuple[Bools, Bools]:
-        feet, sets = self._model.figure.legs[:, 2:], (self._model.roots, self._model.body)
+        feet, sets = self._model.tree.legs[:, 2:], (self._model.roots, self._model.body)
         legs, body = (np.array([np.isin(each.joints, own) for own in feet]) for each in sets)
         return legs, body
 

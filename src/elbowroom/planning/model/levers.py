@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 from elbowroom.body.dof import LOCAL_GROUPS, LOWERING, DofGroup
 from elbowroom.body.gait.lowered_hips import STEEPEST, hips_sinks
 from elbowroom.body.humanoid import Humanoid
+from elbowroom.body.pose.joint_tree import SpineColumn
 from elbowroom.body.pose.kinematics import BodyModel, body_model, leg_capsules, pelvis_frames
-from elbowroom.body.pose.posing import Column
 from elbowroom.body.root import ROOT_STATE
 from elbowroom.planning.model.even_points import evenly_spread
 from elbowroom.planning.model.limb import Limb, limb_of
@@ -58,7 +58,7 @@ def levers_of(model: BodyModel, limb: Limb) -> Floats:
     return levers
 
 
-def _column_levers(model: BodyModel, column: Column, joints: Indices, ends: Floats, frame: int) -> Floats:
+def _column_levers(model: BodyModel, column: SpineColumn, joints: Indices, ends: Floats, frame: int) -> Floats:
     """What a column's rotation does at most to capsules (C,) as seen from one of its joints, or from its beginning."""
     levers, above = np.zeros(len(joints)), [frame]
     while (parent := int(model.parents[above[-1]])) >= 0:
@@ -144,7 +144,7 @@ def _measured(model: BodyModel) -> BodyLevers:
 
 def _apart(model: BodyModel) -> float:
     """Metres from the hips joint to the middle between those of the legs."""
-    return float(np.linalg.norm(model.offsets[model.figure.legs[:, 0]].mean(axis=0)))
+    return float(np.linalg.norm(model.offsets[model.tree.legs[:, 0]].mean(axis=0)))
 
 
 def _lengths(model: BodyModel, joints: Indices, ends: Floats) -> Floats:

@@ -10,7 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.dof import CHILDREN, DofGroup
-from elbowroom.body.pose import posing
+from elbowroom.body.pose.chain_posing import PoseScratch, pose_chain, pose_chain_into, pose_scratch
+from elbowroom.body.pose.joint_tree import Chain
 from elbowroom.body.pose.kinematics import BodyModel, chest_frames, group_capsules
 from elbowroom.by_reference import by_reference
 from elbowroom.geometry import quaternion
@@ -28,7 +29,7 @@ _FIRST = plain(0)  # place in a row of capsules
 class Limb(NamedTuple):
     """What posing one local group needs of a `BodyModel`, and what it must keep off however the body stands."""
 
-    chain: posing.Chain
+    chain: Chain
     radii: Floats32  # (C,) metres
     trunk: Floats  # (K, 6) in the chest frame with the waist at rest; none for the waist
     allowed: Floats  # (C, K) metres: how near the limb's axes may come to those of the trunk
@@ -54,7 +55,7 @@ def _trunk_limits(model: BodyModel, group: DofGroup) -> tuple[Floats, Floats]:
     rest = np.zeros((1, parent.size))
     positions, rotations = chest_frames(model, rest)
     chain, capsules = model.trunk
-    ends = posing.pose_chain(chain, rest)[0][:, :, 0].astype(np.float64).reshape(-1, 2, 3)
+    ends = pose_chain(chain, rest)[0][:, :, 0].astype(np.float64).reshape(-1, 2, 3)
     trunk = quaternion.rotate(quaternion.conjugate(rotations[0]), ends - positions[0]).reshape(-1, 6)
     hanging = group_capsules(model, group, np.zeros((1, group.size)))
     return trunk, allowed_distances(hanging, radii, trunk, capsules.radii)
@@ -63,7 +64,7 @@ def _trunk_limits(model: BodyModel, group: DofGroup) -> tuple[Floats, Floats]:
 class LimbScratch(NamedTuple):
     """What the posing of a limb works on; it belongs to that limb."""
 
-    joints: posing.PoseScratch
+    joints: PoseScratch
     places: Floats  # (N, 3) of the frames that the waist's limb carries
     turns: Floats  # (N, 4)
     none: Floats32  # (0, 6, 0) no capsules
@@ -73,7 +74,7 @@ class LimbScratch(NamedTuple):
 def limb_scratch(limb: Limb, count: int) -> LimbScratch:
     """What posing a limb in `count` configurations at once works on."""
     return LimbScratch(
-        posing.pose_scratch(limb.chain),
+        pose_scratch(limb.chain),
         np.empty((count, 3)),
         np.empty((count, 4)),
         np.empty((0, 6, 0), np.float32),
@@ -86,7 +87,7 @@ def pose_into(limb: Limb, scratch: LimbScratch, configurations: Floats, count: i
 
     The frames that the waist's limb carries are written to the scratch memory.
     """
-    posing.pose_chain_into(limb.chain, configurations, count, scratch.joints, first, out, scratch.places, scratch.turns)
+    pose_chain_into(limb.chain, configurations, count, scratch.joints, first, out, scratch.places, scratch.turns)
 
 
 @inner_exact_kernel

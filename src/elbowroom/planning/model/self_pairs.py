@@ -98,7 +98,7 @@ def _allowed(model: BodyModel, natural: Floats32, group: DofGroup, other: DofGro
     least: Floats32 = (np.minimum(distances, touching) - OVERLAP).astype(np.float32)
     if group not in CHILDREN:
         least[:, two.joints == model.chains[group].start] = EXEMPT  # it is rooted there
-        belly, thighs = one.joints == model.chains[group].column.joints[0], np.isin(two.joints, model.figure.legs[:, 0])
+        belly, thighs = one.joints == model.chains[group].column.joints[0], np.isin(two.joints, model.tree.legs[:, 0])
         least[np.ix_(belly, thighs)] -= CREASE - OVERLAP
     elif group.is_arm and other not in CHILDREN:
         least[0, two.joints == 0 if other is DofGroup.ROOT else slice(None)] = EXEMPT  # its joint is rooted there

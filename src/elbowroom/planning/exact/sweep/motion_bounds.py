@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from elbowroom.body.gait.cycle import walk_into
 from elbowroom.body.gait.stride import quickness
 from elbowroom.body.pose.kinematics import BodyModel
-from elbowroom.body.pose.posing import place_pelvis_into
+from elbowroom.body.pose.pelvis import place_pelvis_into
 from elbowroom.body.root import HEIGHT, RISES, ROOT_STATE
 from elbowroom.by_reference import by_reference
 from elbowroom.jit import exact_kernel, helper, inner_exact_kernel

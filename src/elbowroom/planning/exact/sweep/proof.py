@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.body.pose.posing import place_pelvis_into
+from elbowroom.body.pose.pelvis import place_pelvis_into
 from elbowroom.body.root import RISES
 from elbowroom.jit import exact_kernel, helper, plain
 from elbowroom.planning.exact.lattice.postures import BLOCK, Postures
