@@ -10,7 +10,7 @@ from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.root import RootState
 from elbowroom.control.controller import Controller
 from elbowroom.experiment.tour.targets import random_targets
-from elbowroom.experiment.tour.tour import ShownFrames, judging, run_tour
+from elbowroom.experiment.tour.tour import FrameCollector, judging, run_tour
 from elbowroom.planning.command import Command
 from elbowroom.planning.navigation.navigator import Navigator
 from elbowroom.planning.navigation.way import NoWayError
@@ -85,7 +85,7 @@ def test_steps_to_a_deck_are_walked_up_and_down_and_nothing_is_touched(tmp_path:
     scene = Scene.load(write_place(tmp_path / "deck.glb", storeys(2)), PlaceOptions(ground=0.0))
     assert math.isinf(scene.obstacles.ground), "floors are in the way too"
     controller = Controller(AVATAR, replace(scene, start=RootState(x=1.4, z=-1.0)))
-    shown = ShownFrames(controller.step(Command(), 0.0))
+    shown = FrameCollector(controller.step(Command(), 0.0))
     result = run_tour(controller, [(1.4, 0.51, 2.8), (1.4, 0.0, 0.3)], shown.append)
     assert [leg.outcome for leg in result.legs] == ["arrived"] * 2, result.legs
     assert result.legs[0].place[1] == pytest.approx(0.51, abs=0.01)

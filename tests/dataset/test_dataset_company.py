@@ -20,7 +20,7 @@ from elbowroom.dataset.make import make_dataset
 from elbowroom.dataset.spec import DatasetSpec
 from elbowroom.dataset.walk import company_on, controller_of, setting_of
 from elbowroom.errors import InputError
-from elbowroom.experiment.judge.apart import Walker, judge_apart
+from elbowroom.experiment.judge.apart import ShownWalker, judge_apart
 from elbowroom.experiment.judge.motion import ShownMotion
 from elbowroom.experiment.parallel import ThisProcess
 from place_builder import Boxes, write_place
@@ -42,12 +42,12 @@ def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
-def standing(x: float, z: float, frames: int = 3) -> Walker:
+def standing(x: float, z: float, frames: int = 3) -> ShownWalker:
     roots = np.zeros((frames, ROOT_STATE))
     roots[:, 0], roots[:, 1] = x, z
     q = np.zeros((frames, DOF))
     q[:, :2] = x, z
-    return Walker(Humanoid.default(), ShownMotion.at_rate(q, roots))
+    return ShownWalker(Humanoid.default(), ShownMotion.at_rate(q, roots))
 
 
 def test_others_are_drawn_and_all_else_is_as_without() -> None:

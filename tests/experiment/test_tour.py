@@ -15,7 +15,7 @@ from elbowroom.control.controller import Controller
 from elbowroom.experiment.judge.verdict import Judging
 from elbowroom.experiment.tour.leg import NO_WAY, OUT_OF_TIME, walk_to
 from elbowroom.experiment.tour.targets import random_targets
-from elbowroom.experiment.tour.tour import Milliseconds, ShownFrames, judging, run_tour
+from elbowroom.experiment.tour.tour import FrameCollector, Milliseconds, judging, run_tour
 from elbowroom.planning.command import Command
 from elbowroom.planning.navigation.way import NoWayError
 from elbowroom.world.places.options import PlaceOptions
@@ -37,7 +37,7 @@ def rooms(tmp_path_factory: pytest.TempPathFactory) -> Scene:
 
 def test_both_rooms_are_visited_and_nothing_is_touched(humanoid: Humanoid, rooms: Scene) -> None:
     controller = Controller(humanoid, rooms)
-    shown = ShownFrames(controller.step(Command(), 0.0))
+    shown = FrameCollector(controller.step(Command(), 0.0))
     heard = []
     result = run_tour(controller, [(0.0, 6.0), (-1.2, 1.0)], shown.append, lambda number, leg: heard.append(number))
     assert (result.targets, result.arrived, heard) == (2, 2, [0, 1])

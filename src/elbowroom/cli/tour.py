@@ -24,7 +24,7 @@ from elbowroom.planning.names import DEFAULT_PLANNER
 if TYPE_CHECKING:
     from elbowroom.control.controller import Controller
     from elbowroom.experiment.judge.verdict import Verdict
-    from elbowroom.experiment.tour.tour import Milliseconds, ShownFrames, TourResult
+    from elbowroom.experiment.tour.tour import FrameCollector, Milliseconds, TourResult
 
 EXAMPLES = "Examples:  elbowroom tour d  |  elbowroom tour house.glb --drop 'IfcDoor_*' --targets 20 --seed 3 --json"
 FELL_SHORT = 1
@@ -85,12 +85,14 @@ def tour(
     raise typer.Exit(FELL_SHORT if touched or result.arrived < result.targets else 0)
 
 
-def _walked(controller: "Controller", count: int, record: Path | None, quiet: bool) -> "tuple[ShownFrames, TourResult]":
+def _walked(
+    controller: "Controller", count: int, record: Path | None, quiet: bool
+) -> "tuple[FrameCollector, TourResult]":
     from contextlib import nullcontext
 
     from elbowroom.control.recordings.recording import Recorder
     from elbowroom.experiment.tour.targets import random_targets
-    from elbowroom.experiment.tour.tour import ShownFrames, run_tour
+    from elbowroom.experiment.tour.tour import FrameCollector, run_tour
     from elbowroom.planning.command import Command
 
     start = controller.root.x, controller.root.height, controller.root.z
@@ -100,12 +102,12 @@ def _walked(controller: "Controller", count: int, record: Path | None, quiet: bo
         nullcontext() if record is None else Recorder(record, controller) as recorder,
     ):
         move(0, count)
-        shown = ShownFrames(controller.step(Command(), 0.0), recorder)
+        shown = FrameCollector(controller.step(Command(), 0.0), recorder)
         return shown, run_tour(controller, places, shown.append, lambda number, _leg: move(number + 1, count))
 
 
 def _judged(
-    shown: "ShownFrames", controller: "Controller", result: "TourResult", *, mesh: bool, json: bool, quiet: bool
+    shown: "FrameCollector", controller: "Controller", result: "TourResult", *, mesh: bool, json: bool, quiet: bool
 ) -> "Verdict":
     """The verdict, reported; one that is broken off too, with what was judged until then."""
     from elbowroom.experiment.tour.tour import judging
@@ -126,7 +128,7 @@ def _judged(
     return verdict
 
 
-def _draw(path: Path, controller: "Controller", shown: "ShownFrames", result: "TourResult") -> None:
+def _draw(path: Path, controller: "Controller", shown: "FrameCollector", result: "TourResult") -> None:
     from PIL import Image
 
     from elbowroom.experiment.tour.picture import tour_picture

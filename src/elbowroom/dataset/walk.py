@@ -22,7 +22,7 @@ from elbowroom.dataset.row import Row, others_in, row_of
 from elbowroom.dataset.spec import STOCK, STYLE, DatasetSpec, level
 from elbowroom.experiment.crossing import DT, start_for
 from elbowroom.experiment.gauntlet.course import CourseMaker, NoCourseError
-from elbowroom.experiment.judge.apart import Walker, judge_apart
+from elbowroom.experiment.judge.apart import ShownWalker, judge_apart
 from elbowroom.experiment.judge.motion import ShownMotion
 from elbowroom.experiment.judge.verdict import judge
 from elbowroom.experiment.opened import Openable, opened
@@ -135,12 +135,12 @@ def company_on(drawn: DrawnWalk, setting: Setting, controller: Controller) -> Co
     return company_of(controller, humanoids, setting.scene, drawn.seed)
 
 
-def _shown(humanoid: Humanoid, frames: Sequence[Frame]) -> Walker:
+def _shown(humanoid: Humanoid, frames: Sequence[Frame]) -> ShownWalker:
     q, roots = np.stack([frame.q for frame in frames]), np.stack([frame.root for frame in frames])
-    return Walker(humanoid, ShownMotion.at_rate(q, roots, 1.0 / DT))
+    return ShownWalker(humanoid, ShownMotion.at_rate(q, roots, 1.0 / DT))
 
 
-def _fault(walkers: Sequence[Walker], scene: Scene) -> str | None:
+def _fault(walkers: Sequence[ShownWalker], scene: Scene) -> str | None:
     """What the judge finds wrong with a walk: something touches the place, itself, or the walker one of the others."""
     for one in walkers:
         verdict = judge(one.motion, one.humanoid, scene)

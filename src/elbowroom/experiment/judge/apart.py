@@ -14,7 +14,7 @@ _AT_ONCE = 60  # poses
 _TOLERANCE = 1e-5  # metres inside each other that are no contact: rounding
 
 
-class Walker(NamedTuple):
+class ShownWalker(NamedTuple):
     """Who was shown."""
 
     humanoid: Humanoid
@@ -28,7 +28,7 @@ class Apart(NamedTuple):
     deepest: float  # metres, 0 where they never touch
 
 
-def judge_apart(one: Walker, other: Walker, rate: float = 240.0) -> Apart:
+def judge_apart(one: ShownWalker, other: ShownWalker, rate: float = 240.0) -> Apart:
     """Judge two motions of the same frames, `rate` poses a second."""
     judge, moments = _Judge(one.humanoid, other.humanoid), one.motion.moments(rate)
     touching, deepest = 0, 0.0

@@ -13,7 +13,7 @@ from elbowroom.experiment.judge.nearest_first import nearest_first
 from elbowroom.experiment.judge.obstacle_index import ObstacleIndex
 from elbowroom.experiment.judge.obstacles import Obstacle, coal_library
 from elbowroom.experiment.judge.patches import Patch, patches_of
-from elbowroom.experiment.judge.pieces import MOST, Piece
+from elbowroom.experiment.judge.pieces import MOST, MeshPiece
 from elbowroom.experiment.judge.skin import Skin
 from elbowroom.experiment.judge.stretches import Stretches, stretches_of
 
@@ -120,7 +120,7 @@ class MeshJudge:
         if distance > 0.0:
             return distance
         contacts = self._contacts(bodies, len(triangles))
-        if not isinstance(obstacle.made_of, Piece):
+        if not isinstance(obstacle.made_of, MeshPiece):
             return min([float(contact.penetration_depth) for contact in contacts], default=0.0)
         mine, theirs = ([getattr(contact, side) for contact in contacts] for side in ("b1", "b2"))
         return -float(crossing_depths(points[triangles[mine]], obstacle.triangles[theirs]).max(initial=0.0))

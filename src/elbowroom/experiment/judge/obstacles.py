@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.errors import InputError
-from elbowroom.experiment.judge.pieces import Piece, pieces_of
+from elbowroom.experiment.judge.pieces import MeshPiece, pieces_of
 from elbowroom.experiment.judge.poses import Posed
 from elbowroom.geometry import quaternion
 from elbowroom.world.obstacles.meshes.hulls import surface_of
@@ -43,7 +43,7 @@ class Obstacle:
     @cached_property
     def shape(self) -> Any:
         """The library's shape; that of a piece is made when it is first asked for: most are never near."""
-        return _library_mesh(self.made_of.mesh) if isinstance(self.made_of, Piece) else self.made_of
+        return _library_mesh(self.made_of.mesh) if isinstance(self.made_of, MeshPiece) else self.made_of
 
     @cached_property
     def triangles(self) -> Floats:

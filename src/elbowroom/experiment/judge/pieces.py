@@ -18,7 +18,7 @@ _SMALL, MOST = 0.5, 32  # metres, and triangles: a piece that has no longer side
 _FLAT = 1e-12  # square metres: a smaller triangle says nothing of how it is turned
 
 
-class Piece(NamedTuple):
+class MeshPiece(NamedTuple):
     """Some triangles of a mesh, and the box round them."""
 
     whole: Mesh
@@ -43,9 +43,9 @@ class _Triangles(NamedTuple):
     axes: Floats  # (T, 3, 3) rows: along the longest side, across it in the triangle, and out of it
 
 
-def pieces_of(mesh: Mesh) -> list[Piece]:
+def pieces_of(mesh: Mesh) -> list[MeshPiece]:
     """The mesh in pieces; each of its triangles is in one."""
-    triangles, waiting, done = _triangles(mesh), [np.arange(len(mesh.faces))], list[Piece]()
+    triangles, waiting, done = _triangles(mesh), [np.arange(len(mesh.faces))], list[MeshPiece]()
     while waiting:
         rows = waiting.pop()
         if len(rows) == 1 or (len(rows) <= MOST and np.ptp(mesh.corners[rows], axis=(0, 1)).max() <= _SMALL):
@@ -68,12 +68,12 @@ def _triangles(mesh: Mesh) -> _Triangles:
     return _Triangles(mesh, corners.mean(axis=1), areas, axes / np.where(lengths > 0.0, lengths, 1.0))
 
 
-def _piece(triangles: _Triangles, rows: Ints) -> Piece:
+def _piece(triangles: _Triangles, rows: Ints) -> MeshPiece:
     """In a box along the mesh's axes, or along those of its largest triangle: that which is smaller."""
     points, largest = triangles.whole.corners[rows].reshape(-1, 3), rows[triangles.areas[rows].argmax()]
     ways = (np.eye(3), triangles.axes[largest]) if triangles.areas[largest] > _FLAT else (np.eye(3),)
     middle, axes, half = min((_box(points, axes) for axes in ways), key=lambda box: _surface(*box[2].tolist()))
-    return Piece(triangles.whole, rows, middle, axes, half)
+    return MeshPiece(triangles.whole, rows, middle, axes, half)
 
 
 def _box(points: Floats, axes: Floats) -> tuple[Floats, Floats, Floats]:

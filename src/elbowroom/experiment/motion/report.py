@@ -12,11 +12,11 @@ from elbowroom.body.humanoid import Humanoid
 from elbowroom.experiment.motion import bands
 from elbowroom.experiment.motion.bands import Band, at_least, at_most
 from elbowroom.experiment.motion.borne import Borne
-from elbowroom.experiment.motion.cost import ProcessorTime, cost
 from elbowroom.experiment.motion.curves import Curves, curves
 from elbowroom.experiment.motion.feet import Feet, FootTrack, feet, foot_tracks
 from elbowroom.experiment.motion.gaps import Narrow, narrow, pass_gap
 from elbowroom.experiment.motion.knees import Knees, flexions, knees
+from elbowroom.experiment.motion.processor_time import ProcessorTime, processor_time
 from elbowroom.experiment.motion.scripts import Script, scripts
 from elbowroom.experiment.motion.settings import GAPS, STEADY, UNEVEN, MotionSettings
 from elbowroom.experiment.motion.smooth import Smoothness, smoothness
@@ -97,7 +97,7 @@ def run(humanoid: Humanoid, settings: MotionSettings, tick: Callable[[int], None
         gaits=tuple(gaits),
         narrow=narrow(humanoid, tuple(passages)) if passages else None,
         head_lead=lead,
-        cost=cost(humanoid),
+        cost=processor_time(humanoid),
     )
 
 

@@ -119,8 +119,8 @@ def fold_cell(records: Sequence[Record], limit: float) -> Cell:
         realtime_trials=sum(record["realtime"] for record in records),
         punctual_trials=sum(record["late_frames"] == 0 for record in records),
         late_frames=sum(record["late_frames"] for record in records),
-        frame_ms=_cost([value for record in records for value in record["frame_ms"]]),
-        plan_ms=_cost([value for record in records for value in record["plan_ms"]]),
+        frame_ms=_taken([value for record in records for value in record["frame_ms"]]),
+        plan_ms=_taken([value for record in records for value in record["plan_ms"]]),
         least_clearance=min(record["least_clearance"] for record in records),
     )
 
@@ -173,7 +173,7 @@ def _per_plan(records: Sequence[Record], name: str) -> Estimate | None:
     return Estimate(sum(checks) / sum(plans), *interval)
 
 
-def _cost(values: Sequence[float]) -> MillisecondsTaken:
+def _taken(values: Sequence[float]) -> MillisecondsTaken:
     return MillisecondsTaken(
         len(values), percentile(values, 50.0), percentile(values, 99.0), max(values, default=float("nan"))
     )

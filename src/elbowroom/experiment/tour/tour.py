@@ -66,7 +66,7 @@ class TourResult:
         return tuple(leg for leg in self.legs if not leg.arrived)
 
 
-class ShownFrames:
+class FrameCollector:
     """Collects what is shown, for the judge."""
 
     def __init__(self, frame: Frame, recorder: Recorder | None = None) -> None:
@@ -118,7 +118,7 @@ def run_tour(
     )
 
 
-def judging(shown: ShownFrames, controller: Controller, *, mesh: bool) -> Judging:
+def judging(shown: FrameCollector, controller: Controller, *, mesh: bool) -> Judging:
     """The other library's judgement of what was shown, against all that stands in the scene."""
     return Judging(shown.motion(), controller.humanoid, controller.scene, JudgeSettings(mesh=mesh))
 

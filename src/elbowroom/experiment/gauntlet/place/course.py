@@ -17,7 +17,7 @@ from elbowroom.experiment.gauntlet.course import NoCourseError
 from elbowroom.experiment.gauntlet.draw import GRAIN, Draw
 from elbowroom.experiment.gauntlet.names import LARGEST_SEED
 from elbowroom.experiment.gauntlet.place.furnished import MARGIN
-from elbowroom.experiment.gauntlet.place.furniture import Piece, furniture_of, made_up
+from elbowroom.experiment.gauntlet.place.furniture import Furniture, furniture_of, made_up
 from elbowroom.experiment.gauntlet.place.proof import ProvenWalk, keeps_clear, proven_walk
 from elbowroom.geometry import quaternion
 from elbowroom.planning.navigation.navigator import Navigator
@@ -64,7 +64,7 @@ class PlaceCourseMaker:
 
     humanoid: Humanoid
     fixed: Scene  # the place without what can be moved
-    own: tuple[Piece, ...]  # what can be moved
+    own: tuple[Furniture, ...]  # what can be moved
     count: int  # pieces that are put beside each way
 
     @classmethod
@@ -119,9 +119,9 @@ class PlaceCourseMaker:
         level = float(np.abs(corners[:, 1]).max()) <= _LEVEL and not way.climbs
         return np.round(corners[:, [0, 2]], GRAIN) if level and _SHORTEST <= length <= _LONGEST else None
 
-    def _furnished(self, draw: Draw, corners: Floats, walk: ProvenWalk) -> list[tuple[Piece, Floats, float]]:
+    def _furnished(self, draw: Draw, corners: Floats, walk: ProvenWalk) -> list[tuple[Furniture, Floats, float]]:
         """Pieces with the middle (2,) and the turn of each, beside a way; fewer where there is no room for more."""
-        placed, left = list[tuple[Piece, Floats, float]](), list(self.own)
+        placed, left = list[tuple[Furniture, Floats, float]](), list(self.own)
         for _ in range(self.count):
             piece = left.pop(draw.whole(0, len(left) - 1)) if left else made_up(draw)
             for _ in range(_TRIES):
@@ -142,7 +142,12 @@ class PlaceCourseMaker:
         return found
 
     def _fits(
-        self, piece: Piece, middle: Floats, turn: float, walk: ProvenWalk, placed: Sequence[tuple[Piece, Floats, float]]
+        self,
+        piece: Furniture,
+        middle: Floats,
+        turn: float,
+        walk: ProvenWalk,
+        placed: Sequence[tuple[Furniture, Floats, float]],
     ) -> bool:
         """Whether a piece stands on the floor, apart from the others, near the way and out of it."""
         reach = float(np.hypot(piece.half[0], piece.half[2]))
@@ -152,7 +157,7 @@ class PlaceCourseMaker:
         gap = walk.rows.gap(_box_row(piece, middle, turn))
         return MARGIN <= gap <= _GAP and self._on_floor(piece, middle, turn)
 
-    def _on_floor(self, piece: Piece, middle: Floats, turn: float) -> bool:
+    def _on_floor(self, piece: Furniture, middle: Floats, turn: float) -> bool:
         room = self._navigator.room()
         x, z = (np.linspace(-half, half, max(2, math.ceil(2.0 * half / _SAMPLE) + 1)) for half in piece.half[[0, 2]])
         for dx in x.tolist():
@@ -164,7 +169,7 @@ class PlaceCourseMaker:
                     return False
         return True
 
-    def _built(self, seed: int, corners: Floats, placed: list[tuple[Piece, Floats, float]]) -> PlaceCourse:
+    def _built(self, seed: int, corners: Floats, placed: list[tuple[Furniture, Floats, float]]) -> PlaceCourse:
         placed = sorted(placed, key=lambda one: not isinstance(one[0].shape, Mesh))  # the place's own first
         centers = np.array([[at[0], piece.height, at[1]] for piece, at, _ in placed])
         own = np.array([isinstance(piece.shape, Mesh) for piece, _, _ in placed])
@@ -223,7 +228,7 @@ def _turned(shape: Shape, turn: Floats) -> Shape:
     return Mesh(quaternion.rotate(turn, shape.vertices).astype(np.float32).astype(np.float64), shape.faces)
 
 
-def _box_row(piece: Piece, middle: Floats, turn: float) -> Floats:
+def _box_row(piece: Furniture, middle: Floats, turn: float) -> Floats:
     """The box of a piece as `BodyRows.gap` takes it (15,)."""
     cosine, sine = math.cos(turn), math.sin(turn)
     to_box = np.array([[cosine, 0.0, -sine], [0.0, 1.0, 0.0], [sine, 0.0, cosine]])

@@ -20,7 +20,7 @@ _SUNK, _RAISED = 0.3, 0.1  # metres that it may reach below its floor, and begin
 _MOST_PARTS = 2000  # of the size of furniture; a place with more of them is a heap of splinters
 
 
-class Piece(NamedTuple):
+class Furniture(NamedTuple):
     """One piece of furniture, about the middle of its box."""
 
     name: str
@@ -50,9 +50,9 @@ _MADE_UP = (
 )
 
 
-def furniture_of(place: Place, floor: float) -> tuple[tuple[Piece, ...], Place]:
+def furniture_of(place: Place, floor: float) -> tuple[tuple[Furniture, ...], Place]:
     """The pieces of furniture in a place whose floor is at that height, and the place without them."""
-    pieces, moved = list[Piece](), set[int]()
+    pieces, moved = list[Furniture](), set[int]()
     for group in _groups(place.parts):
         parts = [place.parts[k] for k in group]
         least = np.min([part.vertices.min(axis=0) for part in parts], axis=0)
@@ -67,21 +67,21 @@ def furniture_of(place: Place, floor: float) -> tuple[tuple[Piece, ...], Place]:
     return (tuple(pieces), replace(place, parts=left)) if left else ((), place)
 
 
-def made_up(draw: Draw) -> Piece:
+def made_up(draw: Draw) -> Furniture:
     """A piece that no place has."""
     kind = draw.one_of(_MADE_UP)
     wide, deep, high = draw.between(kind.wide), draw.between(kind.deep), draw.between(kind.high)
     shape = Cylinder(0.5 * wide, high) if kind.round else Box((wide, high, deep))
-    return Piece(kind.name, shape, 0.5 * np.array([wide, high, wide if kind.round else deep]), 0.5 * high)
+    return Furniture(kind.name, shape, 0.5 * np.array([wide, high, wide if kind.round else deep]), 0.5 * high)
 
 
-def _piece(parts: list[Part], least: Floats, most: Floats, floor: float) -> Piece:
+def _piece(parts: list[Part], least: Floats, most: Floats, floor: float) -> Furniture:
     middle = 0.5 * (least + most)
     starts = np.cumsum([0, *(len(part.vertices) for part in parts[:-1])])
     faces = np.concatenate([part.faces + start for part, start in zip(parts, starts, strict=True)])
     vertices = np.concatenate([part.vertices for part in parts]) - middle
     mesh = Mesh(vertices.astype(np.float32).astype(np.float64), faces)
-    return Piece(parts[0].name, mesh, 0.5 * (most - least), float(middle[1]) - floor)
+    return Furniture(parts[0].name, mesh, 0.5 * (most - least), float(middle[1]) - floor)
 
 
 def _groups(parts: tuple[Part, ...]) -> Iterator[list[int]]:

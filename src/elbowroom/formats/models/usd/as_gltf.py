@@ -11,7 +11,7 @@ from elbowroom.formats.gltf import Gltf, parse_gltf
 from elbowroom.formats.models.matt import matt
 from elbowroom.formats.models.said import Said
 from elbowroom.formats.models.usd.opening import opened_stage
-from elbowroom.formats.models.usd.pieces import Piece, pieces_of
+from elbowroom.formats.models.usd.pieces import PrimPiece, pieces_of
 
 _FARTHEST = 1e7  # units
 
@@ -30,7 +30,7 @@ def parse_usd_scene(data: bytes, name: str, folder: Path | None) -> tuple[Gltf, 
     return parse_gltf(_drawn(pieces, name), name), said
 
 
-def _drawn(pieces: list[Piece], name: str) -> bytes:
+def _drawn(pieces: list[PrimPiece], name: str) -> bytes:
     draft, nodes = GlbDraft(), dict[tuple[str, ...], int]()
     materials: dict[tuple[float, float, float] | None, int] = {}
     for piece in pieces:

@@ -20,7 +20,7 @@ _ALONG = {"X": [[0, 1, 0], [0, 0, 1], [1, 0, 0]], "Y": [[0, 0, 1], [1, 0, 0], [0
 _ACROSS = {"X": [[0, 0, 1], [0, 1, 0], [1, 0, 0]], "Y": [[1, 0, 0], [0, 0, 1], [0, 1, 0]], "Z": np.eye(3)}
 
 
-class Piece(NamedTuple):
+class PrimPiece(NamedTuple):
     """Triangles of one prim."""
 
     path: tuple[str, ...]  # names, from the top
@@ -29,7 +29,7 @@ class Piece(NamedTuple):
     colour: tuple[float, float, float] | None  # linear; None where it tells none
 
 
-def pieces_of(stage: Any, name: str) -> Iterator[Piece]:
+def pieces_of(stage: Any, name: str) -> Iterator[PrimPiece]:
     """All that is shown, at the first moment; raises `InputError`."""
     left = _MOST_TRIANGLES
     for piece in _under(stage.GetPseudoRoot(), np.eye(4), (), name, 0):
@@ -39,7 +39,7 @@ def pieces_of(stage: Any, name: str) -> Iterator[Piece]:
         yield piece
 
 
-def _under(top: Any, moved: Floats, above: tuple[str, ...], name: str, depth: int) -> Iterator[Piece]:
+def _under(top: Any, moved: Floats, above: tuple[str, ...], name: str, depth: int) -> Iterator[PrimPiece]:
     """What a prim and those below it show; `moved` (4, 4, points in rows) is what their world is moved by."""
     from pxr import Usd, UsdGeom
 
@@ -59,7 +59,7 @@ def _under(top: Any, moved: Floats, above: tuple[str, ...], name: str, depth: in
         elif prim.IsA(UsdGeom.Mesh) or prim.GetTypeName() in _SOLIDS:
             points, faces = _mesh(prim, name) if prim.IsA(UsdGeom.Mesh) else _solid(prim)
             if len(faces):
-                yield Piece(path, points @ world[:3, :3] + world[3, :3], faces, _colour(prim))
+                yield PrimPiece(path, points @ world[:3, :3] + world[3, :3], faces, _colour(prim))
 
 
 def _is_unseen(prim: Any) -> bool:
@@ -73,7 +73,7 @@ def _is_unseen(prim: Any) -> bool:
     return hidden or imageable.ComputePurpose() not in shown
 
 
-def _instances(prim: Any, world: Floats, path: tuple[str, ...], name: str, depth: int) -> Iterator[Piece]:
+def _instances(prim: Any, world: Floats, path: tuple[str, ...], name: str, depth: int) -> Iterator[PrimPiece]:
     """What a PointInstancer shows: each of its prototypes, wherever one stands."""
     from pxr import UsdGeom
 
@@ -81,7 +81,7 @@ def _instances(prim: Any, world: Floats, path: tuple[str, ...], name: str, depth
     stage, prototypes = prim.GetStage(), instancer.GetPrototypesRel().GetForwardedTargets()
     which = instancer.GetProtoIndicesAttr().Get(_first()) or ()
     placed = instancer.ComputeInstanceTransformsAtTime(_first(), _first(), UsdGeom.PointInstancer.ExcludeProtoXform)
-    known: dict[int, list[Piece]] = {}
+    known: dict[int, list[PrimPiece]] = {}
     for number, matrix in zip(which, placed, strict=False):
         if not 0 <= number < len(prototypes):
             raise InputError(f"{name}: {prim.GetPath()}: there is no prototype {number}")

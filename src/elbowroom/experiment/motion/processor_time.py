@@ -25,7 +25,7 @@ class ProcessorTime:
     each_of_many: float  # of 256 at once
 
 
-def cost(humanoid: Humanoid) -> ProcessorTime:
+def processor_time(humanoid: Humanoid) -> ProcessorTime:
     """Time the posing of walking bodies, feet and carriage included."""
     model = body_model(humanoid)
     roots = np.zeros((MANY, ROOT_STATE))
