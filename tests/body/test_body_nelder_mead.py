@@ -6,19 +6,19 @@ import numpy as np
 import pytest
 from scipy.optimize import minimize
 
-from elbowroom.body.fitting.nelder_mead import Ends, Held, least_volume, volume
+from elbowroom.body.fitting.nelder_mead import Ends, PointsToHold, least_volume, volume
 from sampled import sampled
 
 SIZE, SPREAD = 1e-4, 1e-8
 
 
-def some(seed: int) -> tuple[np.ndarray, Held]:
+def some(seed: int) -> tuple[np.ndarray, PointsToHold]:
     """A first simplex, and points to be held."""
     rng = np.random.default_rng(seed)
     points = rng.normal(size=(int(rng.integers(4, 200)), 3)) * rng.uniform(0.02, 0.5, 3)
     first = rng.normal(size=6) * 0.3
     rank = int(rng.integers(0, len(points)))
-    return first + np.vstack([np.zeros(6), 0.2 * np.eye(6)]), Held(points, rank, 0.01)
+    return first + np.vstack([np.zeros(6), 0.2 * np.eye(6)]), PointsToHold(points, rank, 0.01)
 
 
 @pytest.mark.parametrize("seed", range(12))

@@ -12,7 +12,7 @@ from elbowroom.body.gait.own_steps import CYCLE
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.pose.kinematics import body_model
 from elbowroom.body.root import WITH_FEET
-from elbowroom.control.feet.landing_on_ground import Lie, Place, farther_onto
+from elbowroom.control.feet.landing_on_ground import FootPlace, Lie, farther_onto
 from elbowroom.jit import exact_kernel
 from elbowroom.planning.model.footing import Footing, Underfoot
 from elbowroom.world.scene import Scene
@@ -25,7 +25,9 @@ WHO = Stepper(GAIT.legs, GAIT.scale, CYCLE)
 
 
 @exact_kernel
-def farther(under: Underfoot, who: Stepper, row: Floats, side: int, goal: Place, deepest: float) -> tuple[float, Lie]:
+def farther(
+    under: Underfoot, who: Stepper, row: Floats, side: int, goal: FootPlace, deepest: float
+) -> tuple[float, Lie]:
     """The kernel, for who calls it from Python."""
     return farther_onto(under, who, row, side, goal, deepest)
 

@@ -13,7 +13,7 @@ from elbowroom.body.root import RISES, ROOT_STATE
 from elbowroom.clips.motion_set import STOCK
 from elbowroom.control.feet.above_soles import AboveSoles
 from elbowroom.control.feet.arms_beside_legs import arms_beside_legs
-from elbowroom.control.feet.feet import Around, Look, Moment, RoomAbove
+from elbowroom.control.feet.feet import Around, FeetMoment, LookAbout, RoomAbove
 from elbowroom.control.feet.raised import raised
 from elbowroom.control.feet.stepping import Stepping
 from elbowroom.control.key_frame_queue import Playback
@@ -37,11 +37,11 @@ def before(rise: float) -> Floats:
     return root
 
 
-def settling(rise: float, look: Look) -> list[Playback]:
+def settling(rise: float, look: LookAbout) -> list[Playback]:
     """How a pose with a raised foot is held where legs are not clear enough to step."""
     shown = FEET.standing(before(0.0))
     shown[RISES + 2] = rise
-    moment = Moment(
+    moment = FeetMoment(
         Playback(shown, UPPER, UPPER),
         UPPER,
         DT,
@@ -83,7 +83,7 @@ def ways_under(rise: float, room_above: RoomAbove) -> list[Playback]:
     shown = FEET.standing(before(0.0))
     shown[RISES + 2] = rise
     look = Around(0.5, lasts=True)
-    moment = Moment(
+    moment = FeetMoment(
         Playback(shown, UPPER, UPPER),
         UPPER,
         DT,
@@ -121,7 +121,7 @@ def test_no_way_is_told_twice(room: float) -> None:
     feet, planned = Stepping(HUMANOID, STOCK, AboveSoles(body_model(HUMANOID), PLAIN)), before(0.0)
     upper = standing_posture(planned)
     shown, near = Playback(feet.standing(planned), upper, UPPER), Around(0.05, lasts=True)
-    moment = Moment(shown, upper, DT, UNKNOWN, room, lambda *_: near, lambda *_: 0.0, lambda *_: 0.05)
+    moment = FeetMoment(shown, upper, DT, UNKNOWN, room, lambda *_: near, lambda *_: 0.0, lambda *_: 0.05)
     planned[3], planned[6] = 0.8, 0.2
     posed = Playback(planned, upper, UPPER)
     for ways in (list(feet.settling(moment, posed)), [way for way, _ in feet.under(moment, [(posed, np.zeros(3))])]):
@@ -134,7 +134,7 @@ def test_a_foot_that_stands_does_not_glide_where_legs_would_be_no_clearer(room: 
     """Legs that come a tenth of a millimetre too near, whatever feet do: they slid by centimetres, and no more room."""
     feet, planned = Stepping(HUMANOID, STOCK, AboveSoles(body_model(HUMANOID), PLAIN)), before(0.0)
     shown, near = Playback(feet.standing(planned), UPPER, UPPER), Around(0.05, lasts=True)
-    moment = Moment(shown, UPPER, DT, UNKNOWN, -1.0, lambda *_: near, lambda *_: room, lambda *_: 0.05)
+    moment = FeetMoment(shown, UPPER, DT, UNKNOWN, -1.0, lambda *_: near, lambda *_: room, lambda *_: 0.05)
     planned[3], planned[6] = 0.8, 0.2
     way = feet.next(moment, Playback(planned, UPPER, UPPER)).root
     stands = standing(way)

@@ -15,7 +15,7 @@ from elbowroom.experiment.bench.steer_scenes import KEY_FLIPS, corridor, mouse_l
 from elbowroom.planning.command import Command
 from elbowroom.world.obstacles.clearance import clearance
 from elbowroom.world.scene import Scene
-from elbowroom.world.walkable import Stance, stance_segments
+from elbowroom.world.walkable import StanceCapsule, stance_segments
 
 
 def test_there_are_at_least_six_scenes_and_all_can_be_sent_to_a_server() -> None:
@@ -31,7 +31,7 @@ def test_there_are_at_least_six_scenes_and_all_can_be_sent_to_a_server() -> None
 def test_a_corridor_is_as_broad_as_it_says() -> None:
     steered = corridor("bends", 1.0)
     middles = 0.5 * (steered.route[1:] + steered.route[:-1])
-    stance = Stance(0.1, 0.5, 1.0)
+    stance = StanceCapsule(0.1, 0.5, 1.0)
     gaps = clearance(stance_segments(stance, *middles.T), np.array([0.1], np.float32), steered.scene.obstacles.standing)
     assert gaps == pytest.approx(np.full(len(middles), 0.4), abs=1e-5)
 

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.errors import InputError
-from elbowroom.planning.navigation.field import Costly, Field, Prices, aim_from, field_to
+from elbowroom.planning.navigation.cost_field import CostField, Costly, MetrePrices, aim_from, field_to
 from elbowroom.planning.navigation.girth import girth_of
 from elbowroom.planning.navigation.navigator import Navigator
 from elbowroom.planning.navigation.room_map import ground_of, room_map
@@ -22,7 +22,7 @@ from elbowroom.planning.navigation.way import NoWayError
 from elbowroom.world.scene import Scene
 
 CELL, FAR = 0.1, 1e9
-PRICES = Prices(0.2)
+PRICES = MetrePrices(0.2)
 STEPS = [(a, b) for a in (-2, -1, 0, 1, 2) for b in (-2, -1, 0, 1, 2) if math.gcd(a, b) == 1]
 
 
@@ -76,10 +76,10 @@ def costly_of(room: NDArray[np.float32], above: NDArray[np.float32]) -> Costly:
     )
 
 
-def field_of(room: NDArray[np.float32], above: NDArray[np.float32], goal: tuple[int, int]) -> Field:
+def field_of(room: NDArray[np.float32], above: NDArray[np.float32], goal: tuple[int, int]) -> CostField:
     """The field of a plane, in rows and columns."""
     found = field_to(costly_of(room, above), goal[0] * room.shape[1] + goal[1], -1, FAR)
-    return Field(found.cost.reshape(room.shape), found.onward.reshape(room.shape))
+    return CostField(found.cost.reshape(room.shape), found.onward.reshape(room.shape))
 
 
 @settings(max_examples=60, deadline=None)
@@ -116,7 +116,7 @@ def test_who_walks_straight_to_the_aim_walks_where_there_is_room(seed: int) -> N
     goal = tuple(np.random.default_rng(seed + 1).integers(0, room.shape))
     field = field_of(room, above, goal)
     for i, j in np.argwhere(np.isfinite(field.cost)):
-        flat = Field(field.cost.reshape(-1), field.onward.reshape(-1))
+        flat = CostField(field.cost.reshape(-1), field.onward.reshape(-1))
         aim = aim_from(flat, costly_of(room, above), i * room.shape[1] + j, float(i), float(j), FAR)
         to = np.array(divmod(aim, room.shape[1]))
         steps = max(int(np.ceil(np.hypot(*(to - (i, j))))), 1)

@@ -12,7 +12,7 @@ from elbowroom.body.pose.kinematics import body_model
 from elbowroom.body.root import RootState
 from elbowroom.control.controller import Controller
 from elbowroom.planning.command import Command
-from elbowroom.planning.narrow.figure import figure_of
+from elbowroom.planning.narrow.build import build_of
 from elbowroom.planning.narrow.gap import Gap, gap_ahead
 from elbowroom.planning.narrow.places import NarrowPlaces
 from elbowroom.planning.root.line.line import TravelLine
@@ -20,7 +20,7 @@ from elbowroom.world.scene import Scene
 from sampled import sampled
 
 AVATAR = Humanoid.default()
-FIGURE = figure_of(AVATAR, body_model(AVATAR))
+BUILD = build_of(AVATAR, body_model(AVATAR))
 DT = 1 / 60
 angles = st.floats(-math.pi, math.pi)
 
@@ -48,7 +48,7 @@ def line_to(x: float, z: float, heading: float, away: float, aside: float) -> Tr
 
 
 def found(scene: Scene, line: TravelLine) -> Gap | None:
-    return gap_ahead(NarrowPlaces(FIGURE, scene.free_map), line, line.x, line.z, 0.0)
+    return gap_ahead(NarrowPlaces(BUILD, scene.free_map), line, line.x, line.z, 0.0)
 
 
 @settings(deadline=None, max_examples=60)

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.pose.kinematics import leg_capsules
 from elbowroom.body.root import ROOT_STATE, RootState
-from elbowroom.planning.root.legs.along_path import UNKNOWN, Looks, free_part
+from elbowroom.planning.root.legs.along_path import UNKNOWN, PathLooks, free_part
 from elbowroom.planning.root.legs.leg_cache import KnownLegs
 from elbowroom.planning.root.legs.lower_body import LowerBody
 from elbowroom.planning.root.motion import MotionBounds, dense_states, steer, stopping_states
@@ -51,7 +51,7 @@ def free_of_all(body: LowerBody, states: Floats) -> tuple[int, int]:
 @pytest.mark.parametrize("name", ["b", "d"])
 def test_a_path_is_as_far_free_as_all_of_its_states_are(name: str) -> None:
     body, posed, all_posed = LowerBody(AVATAR, Scene.load(name).obstacles), 0, 0
-    looks, near = Looks(body.legs, body.hull, BOUNDS, SKIN, SPACING), body.near(0.0, 2.0, 20.0)
+    looks, near = PathLooks(body.legs, body.hull, BOUNDS, SKIN, SPACING), body.near(0.0, 2.0, 20.0)
     kept: list[int] = []
     for states in walks(ord(name), 40):
         free, count = free_part(looks, near, states, INTERVAL, SKIN, NOTHING_KNOWN.copy())
@@ -65,7 +65,7 @@ def test_a_path_is_as_far_free_as_all_of_its_states_are(name: str) -> None:
 
 def test_what_is_known_is_not_looked_at_again_and_says_the_same() -> None:
     body, known = LowerBody(AVATAR, Scene.load("d").obstacles), KnownLegs()
-    looks, near = Looks(body.legs, body.hull, BOUNDS, SKIN, SPACING), body.near(0.0, 2.0, 20.0)
+    looks, near = PathLooks(body.legs, body.hull, BOUNDS, SKIN, SPACING), body.near(0.0, 2.0, 20.0)
     for states in walks(5, 20):
         asked = looks, near, states, INTERVAL, SKIN
         room, names = known.recalled(INTERVAL, states)

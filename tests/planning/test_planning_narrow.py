@@ -14,7 +14,7 @@ from elbowroom.planning.command import Command
 from elbowroom.planning.exact.sweep.own_body_nodes import SPARE
 from elbowroom.planning.goal import natural_walk
 from elbowroom.planning.model.self_pairs import self_clearances, self_pairs
-from elbowroom.planning.narrow.figure import figure_of
+from elbowroom.planning.narrow.build import build_of
 from elbowroom.planning.narrow.goals import goals_where_narrow
 from elbowroom.planning.narrow.pace import slow_places
 from elbowroom.planning.narrow.places import NarrowPlaces
@@ -29,8 +29,8 @@ Floats = NDArray[np.float64]
 
 HUMANOID = Humanoid.default()
 MODEL = body_model(HUMANOID)
-FIGURE = figure_of(HUMANOID, MODEL)
-WIDTH = 2.0 * FIGURE.broad  # of the shoulders
+BUILD = build_of(HUMANOID, MODEL)
+WIDTH = 2.0 * BUILD.broad  # of the shoulders
 TWIST = columns_of(DofGroup.WAIST).start + 1
 AT = 2.0  # metres ahead: where things stand
 FAR = 4.0  # metres: out of sight of who sets out
@@ -56,7 +56,7 @@ def walk(speed: float = 1.1, heading: float = 0.0, turned: float = 0.0) -> RootP
 
 
 def wanted(place: Scene, path: RootPath) -> Floats:
-    return goals_where_narrow(NarrowPlaces(FIGURE, place.free_map), path, natural_walk()(path))
+    return goals_where_narrow(NarrowPlaces(BUILD, place.free_map), path, natural_walk()(path))
 
 
 def most_turned(width: float) -> float:
@@ -157,7 +157,7 @@ def test_the_narrower_the_slower_and_wide_places_are_not_slow() -> None:
     line = new_line(RootState(), Command(forward=1.0), RootMotionSettings())
     shares = []
     for ratio in np.arange(1.45, 0.9, -0.05):
-        places = slow_places(NarrowPlaces(FIGURE, gap(ratio * WIDTH).free_map), line, 0.0, 4.0, 0.0)
+        places = slow_places(NarrowPlaces(BUILD, gap(ratio * WIDTH).free_map), line, 0.0, 4.0, 0.0)
         assert np.all(np.abs(places[:, 1] - AT) < 0.2)
         shares.append(float(places[:, 2].min(initial=1.0)))
     assert shares[0] == pytest.approx(1.0)
@@ -198,7 +198,7 @@ def between(ratio: float, wide: float) -> Scene:
 @pytest.mark.parametrize("ratio", [1.0, 1.1, 1.2, 1.3])
 def test_in_the_open_one_walks_round_a_narrow_gap_with_room_to_spare(ratio: float, wide: float) -> None:
     outside = abs(crossed_at(between(ratio, wide))) - (0.5 * ratio * WIDTH + wide)
-    assert outside > FIGURE.swinging + 0.04
+    assert outside > BUILD.swinging + 0.04
 
 
 @pytest.mark.parametrize(("ratio", "wide"), [(1.4, 0.2), (1.0, 1.0), (1.1, 1.0), (1.2, 1.0)])

@@ -60,7 +60,7 @@ def test_no_contact_of_legs_is_left_out_and_the_slab_is_none(name: str) -> None:
         states = np.zeros((9, ROOT_STATE))
         states[0] = RootState(*rng.uniform([-0.6, 0, -3, -0.7, -0.6, -2, 0], [0.6, 4.5, 3, 2, 0.6, 2, 1]))
         steer(states, rng.uniform([-0.7, -0.6, -2.5], [2.2, 0.6, 2.5]), 0.15, BOUNDS)
-        moving, _ = to_check(raised(states), 0.15, 3.0, 14.0, 0.01, body.hull, body.ground)
+        moving, _ = to_check(raised(states), 0.15, 3.0, 14.0, 0.01, body.hull, body.boxes)
         shown, owner = dense_states(states, 0.15, 0.0125, every)
         clear = clearance(leg_capsules(flat.model, shown), flat.radii, scene.obstacles.standing)
         least = np.full(8, np.inf)
@@ -71,7 +71,7 @@ def test_no_contact_of_legs_is_left_out_and_the_slab_is_none(name: str) -> None:
             np.minimum(body.clearance(near, raised(shown)), 0.3), np.minimum(clear, 0.3), atol=2e-5
         )
         looked_at += int(moving.sum())
-        before += int(to_check(states, 0.15, 3.0, 14.0, 0.01, flat.hull, flat.ground)[0].sum())
+        before += int(to_check(states, 0.15, 3.0, 14.0, 0.01, flat.hull, flat.boxes)[0].sum())
     assert looked_at <= 1.3 * before + 8
 
 

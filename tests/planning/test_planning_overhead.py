@@ -10,7 +10,7 @@ from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.pose.kinematics import body_model
 from elbowroom.body.root import RootState
 from elbowroom.planning.command import Command
-from elbowroom.planning.narrow.figure import figure_of
+from elbowroom.planning.narrow.build import build_of
 from elbowroom.planning.narrow.overhead import low_places
 from elbowroom.planning.narrow.pace import slow_under
 from elbowroom.planning.narrow.places import NarrowPlaces
@@ -24,7 +24,7 @@ Floats = NDArray[np.float64]
 Thing = dict[str, object]
 
 HUMANOID = Humanoid.default()
-FIGURE = figure_of(HUMANOID, body_model(HUMANOID))
+BUILD = build_of(HUMANOID, body_model(HUMANOID))
 LINE = new_line(RootState(), Command(forward=1.0), RootMotionSettings())
 AT = 2.0  # metres ahead: where things hang
 T = 0.15
@@ -44,7 +44,7 @@ def beam(under: float, thick: float = 0.2) -> Scene:
 
 def slowest(place: Scene) -> float:
     """The least share of the wanted speed on a line that leads under it."""
-    places = slow_under(NarrowPlaces(FIGURE, place.free_map), LINE, 0.0, 4.0, 0.0)
+    places = slow_under(NarrowPlaces(BUILD, place.free_map), LINE, 0.0, 4.0, 0.0)
     assert np.all(np.abs(places[:, 1] - AT) < 0.5)
     return float(places[:, 2].min(initial=1.0))
 
@@ -53,7 +53,7 @@ def slowest(place: Scene) -> float:
 @settings(max_examples=15, deadline=None)
 def test_how_low_it_hangs_is_known_to_two_centimetres(under: float, thick: float) -> None:
     ways = np.array([[0.0, AT, 0.0, 1.0], [0.3, AT, 0.0, 1.0]])
-    found = low_places(NarrowPlaces(FIGURE, beam(under, thick).free_map), ways, 0.0)
+    found = low_places(NarrowPlaces(BUILD, beam(under, thick).free_map), ways, 0.0)
     assert found[:, 2] == pytest.approx(np.full(2, under), abs=0.02)
 
 
@@ -70,7 +70,7 @@ def test_the_lower_it_hangs_the_slower_and_by_no_leaps() -> None:
     "place",
     [
         scene(),
-        beam(FIGURE.tall + 0.07),
+        beam(BUILD.tall + 0.07),
         scene(box(0.0, 0.0, 0.9, 3.0)),  # a table
         scene(box(0.0, 0.0, 2.4, 3.0)),  # a wall
         scene(box(0.6, 1.3, 1.9, 0.4)),  # hangs beside

@@ -13,8 +13,8 @@ from elbowroom.body.pose.kinematics import body_model, leg_capsules
 from elbowroom.body.root import RootState
 from elbowroom.planning.command import Command
 from elbowroom.planning.root.evasion.evasion import EvasionFinder, EvasionSettings
-from elbowroom.planning.root.evasion.grid_search import Prices, cheapest
-from elbowroom.planning.root.evasion.profile import Course, follow_profile, turned_speed
+from elbowroom.planning.root.evasion.grid_search import GridPrices, cheapest
+from elbowroom.planning.root.evasion.profile import PacedLine, follow_profile, turned_speed
 from elbowroom.planning.root.line.line import new_line
 from elbowroom.planning.root.motion import MotionBounds
 from elbowroom.planning.root.plan import RootPlan, RootPlanKind
@@ -89,7 +89,7 @@ def test_the_search_finds_the_optimum_of_all_ways() -> None:
     for _ in range(12):
         clear = rng.uniform(-0.02, 0.06, (3, 5, 3, 3)).astype(np.float32)
         clear[:, 0, 1, 1] = 0.06
-        prices = Prices(0.0, 0.01, 0.06, 0.3, 0.1, 0.2, 0.25, 0.3, (3.0, 2.0, 1.0), 0.05, (0.4, 0.1))
+        prices = GridPrices(0.0, 0.01, 0.06, 0.3, 0.1, 0.2, 0.25, 0.3, (3.0, 2.0, 1.0), 0.05, (0.4, 0.1))
         standing, favoured = rng.uniform(0.0, 0.3, 3), rng.integers(0, 3, (5, 2))
         way, cost = cheapest(clear, standing, prices, np.array([1, 1]), favoured)
         costs = [_cost_of(list(cells), clear, standing, prices, favoured) for cells in _ways()]
@@ -137,7 +137,7 @@ def test_a_profile_is_followed_closely_and_within_the_bounds() -> None:
     rows[10:20, 1] = np.radians([20, 40, 60, 80, 80, 80, 60, 40, 20, 0])
     states, bounds = np.zeros((30, 7)), MotionBounds(2.5, 2.0, 3.0, 14.0)
     states[0, 3] = 1.0
-    follow_profile(states, rows, 0.0, 0.1, Course(0.0, 0.0, 0.0, 0.0, 1.1, 0.45, False), 0.15, bounds)
+    follow_profile(states, rows, 0.0, 0.1, PacedLine(0.0, 0.0, 0.0, 0.0, 1.1, 0.45, False), 0.15, bounds)
     wanted = np.interp(states[:, 1], 0.1 * np.arange(33), rows[:, 0])
     assert np.abs(states[:, 0] - wanted).max() < 0.04
     turned = np.interp(states[:, 1], 0.1 * np.arange(33), rows[:, 1])

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.pose.kinematics import leg_capsules
 from elbowroom.body.root import ROOT_STATE, RootState
-from elbowroom.planning.root.legs.hull import ground_below, to_check
+from elbowroom.planning.root.legs.hull import boxes_below, to_check
 from elbowroom.planning.root.legs.lower_body import LowerBody
 from elbowroom.planning.root.motion import MotionBounds, dense_states, steer, stopping_states
 from elbowroom.world.obstacles.clearance import clearance
@@ -48,7 +48,7 @@ def test_no_contact_is_left_out_and_much_is() -> None:
         obstacles = Scene.load(scene).obstacles
         body, near = LowerBody(AVATAR, obstacles), obstacles.standing
         for states in walks(ord(scene), 40):
-            moving, stopping = to_check(states, 0.15, 3.0, 14.0, 0.01, body.hull, body.ground)
+            moving, stopping = to_check(states, 0.15, 3.0, 14.0, 0.01, body.hull, body.boxes)
             shown = least_by_owner(body, near, dense_states(states, 0.15, SPACING, every))
             stops = least_by_owner(body, near, stopping_states(states, 0.15, BOUNDS, SPACING, every))
             assert not np.any(~moving & (shown < 0.01))
@@ -85,8 +85,8 @@ def test_only_what_is_low_enough_covers_the_ground() -> None:
         inside[:, 0] * np.sin(angle) + inside[:, 1] * np.cos(angle),
     )
     for height in (0.5, 0.9, 1.3, 5.0):
-        ground = ground_below(plank.corners, height)
+        boxes = boxes_below(plank.corners, height)
         low = y + 1.0 <= height
-        assert ground.least[0, 0] <= x[low].min() < ground.least[0, 0] + 0.05
-        assert ground.most[0, 0] >= x[low].max() > ground.most[0, 0] - 0.05
-        assert len(ground.corners[0]) == 24
+        assert boxes.least[0, 0] <= x[low].min() < boxes.least[0, 0] + 0.05
+        assert boxes.most[0, 0] >= x[low].max() > boxes.most[0, 0] - 0.05
+        assert len(boxes.corners[0]) == 24

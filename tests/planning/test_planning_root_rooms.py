@@ -8,7 +8,7 @@ from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.root import RootState
 from elbowroom.geometry import quaternion
 from elbowroom.planning.command import Command
-from elbowroom.planning.root.evasion.room import Floor, Grid, Room, free_distance
+from elbowroom.planning.root.evasion.room import GridFloor, LineGrid, Room, free_distance
 from elbowroom.planning.root.evasion.turned_body import TurnedBody
 from elbowroom.planning.root.line.line import TravelLine
 from elbowroom.planning.root.planner import RootPlanner
@@ -27,8 +27,8 @@ Floats = NDArray[np.float64]
 AVATAR = Humanoid.default()
 ANGLES = np.array([-0.8, 0.0, 1.2])
 BODY = TurnedBody(AVATAR, ANGLES)
-GRID = Grid(0.3, 0.1, 0.08, 8, 7, 0.06, 0.012, 0.047)
-FLAT = Floor(np.zeros((8, 7)), -np.inf)
+GRID = LineGrid(0.3, 0.1, 0.08, 8, 7, 0.06, 0.012, 0.047)
+FLAT = GridFloor(np.zeros((8, 7)), -np.inf)
 LINE = TravelLine((0.0, 0.0), 3.0, -2.0, 0.7, 0.7, True)
 LOW, HIGH = np.array([1.0, -4.0]), np.array([6.0, 1.0])
 SPEEDS = (1.1, 0.45)

@@ -12,7 +12,7 @@ from elbowroom.planning.root.legs.lower_body import LowerBody
 from elbowroom.planning.root.legs.moving_legs import MovingAround
 from elbowroom.planning.root.line.ahead import RouteFinder
 from elbowroom.planning.root.line.line import new_line, wanted_speed
-from elbowroom.planning.root.line.straight_walk import Stretch, Walker, straight_walk
+from elbowroom.planning.root.line.straight_walk import Outlook, Walker, straight_walk
 from elbowroom.planning.root.motion import NONE_SLOW, MotionBounds
 from elbowroom.planning.root.plan import RootPlanKind, RootPlannerSettings
 from elbowroom.planning.root.query import Asked, RootQuery
@@ -31,17 +31,17 @@ class Paths:
         self.body = LowerBody(Humanoid.default(), Scene.load(scene).obstacles)
         self.check = LegCheck(self.body, BOUNDS, SETTINGS.skin, SETTINGS.spacing)
         self.routes = RouteFinder(SETTINGS, self.body)
-        hull, ground, grids = self.body.hull, self.body.ground, self.body.grids
-        self.walker = Walker(BOUNDS, self.routes.half, SETTINGS.skin, hull, ground, grids, prices_of(SETTINGS))
+        hull, boxes, grids = self.body.hull, self.body.boxes, self.body.grids
+        self.walker = Walker(BOUNDS, self.routes.half, SETTINGS.skin, hull, boxes, grids, prices_of(SETTINGS))
 
     def agree(self, start: RootState, command: Command, pace: float) -> bool:
         """Whether nothing is near; if so, the query must say the same."""
         line, speed = new_line(start, command, SETTINGS.motion), wanted_speed(command, SETTINGS.motion)
-        stretch, around = (
-            Stretch(HORIZON, INTERVAL, SIGHT, REACH),
+        outlook, around = (
+            Outlook(HORIZON, INTERVAL, SIGHT, REACH),
             MovingAround(self.body, STILL, 0.0, HORIZON, INTERVAL),
         )
-        found = straight_walk(self.walker, start.as_array(), line, speed, pace, stretch, NONE_SLOW)
+        found = straight_walk(self.walker, start.as_array(), line, speed, pace, outlook, NONE_SLOW)
         asked = Asked(start, command, HORIZON, INTERVAL, 0.0)
         query = RootQuery(SETTINGS, self.check, self.routes, asked, REACH, around)
         answer = query.travelled(line, pace * speed, SIGHT)
@@ -53,7 +53,7 @@ class Paths:
         assert (kind, (x, z), False) == (answer.kind, answer.goal, answer.ends)
         assert query.checks == 0
         assert lost == seconds_lost(
-            SETTINGS, line, speed, states, HORIZON * INTERVAL, ends=False, around=around, figure=(0.3, 1.8)
+            SETTINGS, line, speed, states, HORIZON * INTERVAL, ends=False, around=around, size=(0.3, 1.8)
         )
         return True
 

@@ -8,7 +8,7 @@ from elbowroom.body.dof import LOCAL, SEARCH_ORDER, DofGroup, columns_of
 from elbowroom.body.fitting.proportions import proportional_humanoid
 from elbowroom.body.pose.kinematics import body_model
 from elbowroom.body.root import ROOT_STATE
-from elbowroom.planning.exact.group.own_contacts import Contact, rule_out_near
+from elbowroom.planning.exact.group.own_contacts import OwnContact, rule_out_near
 from elbowroom.planning.exact.memory.previous_plan import StartState
 from elbowroom.planning.exact.plan import upper_body
 from elbowroom.planning.exact.plan.upper_body import UpperBodyPlanner
@@ -30,7 +30,7 @@ WAIST, ARM = np.array([0.1, 0.0, 0.0]), np.array([0.5, 0.2, 0.0, 1.0])
 
 
 def test_a_contact_happens_again_while_the_groups_before_are_the_same() -> None:
-    contact = Contact(DofGroup.LEFT_ARM, 5, WAIST, ARM, 0.15)
+    contact = OwnContact(DofGroup.LEFT_ARM, 5, WAIST, ARM, 0.15)
     assert contact.happens(WAIST + 1e-9)
     assert not contact.happens(WAIST + 0.01)
 

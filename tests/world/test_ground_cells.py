@@ -5,7 +5,7 @@ import pytest
 from numpy.typing import NDArray
 
 from elbowroom.world.ground import cells
-from elbowroom.world.ground.cells import Grid, Parts, cell_by_cell, grid_over, parts_of
+from elbowroom.world.ground.cells import CellGrid, CellParts, cell_by_cell, grid_over, parts_of
 from elbowroom.world.ground.making import planes_of
 
 Floats = NDArray[np.float64]
@@ -39,7 +39,7 @@ def cut(triangle: Floats, corner: Floats, side: float) -> Floats:
 
 @pytest.mark.parametrize("seed", range(3))
 def test_each_cell_has_the_parts_in_it_as_low_and_as_high_as_they_are(seed: int) -> None:
-    there, grid = triangles(seed), Grid((-2.1, -1.6), 0.3, (14, 11))
+    there, grid = triangles(seed), CellGrid((-2.1, -1.6), 0.3, (14, 11))
     parts = parts_of(planes_of(there), grid)
     known = {(int(c), int(t)): (low, high) for c, t, low, high in zip(*parts, strict=True)}
     assert len(known) == len(parts.cells)
@@ -56,9 +56,9 @@ def test_each_cell_has_the_parts_in_it_as_low_and_as_high_as_they_are(seed: int)
 
 @pytest.mark.parametrize("seed", range(3))
 def test_of_each_cell_those_come_first_that_begin_higher_and_tops_are_of_all_that_follow(seed: int) -> None:
-    grid = Grid((-2.1, -1.6), 0.3, (14, 11))
+    grid = CellGrid((-2.1, -1.6), 0.3, (14, 11))
     firm, more = parts_of(planes_of(triangles(seed)), grid), parts_of(planes_of(triangles(9)), grid, first=60)
-    both = Parts(*(np.concatenate(pair) for pair in zip(firm, more, strict=True)))
+    both = CellParts(*(np.concatenate(pair) for pair in zip(firm, more, strict=True)))
     starts, members, bottoms, tops = cell_by_cell(both, grid)
     assert starts[0] == 0
     assert starts[-1] == len(members) == len(both.cells)

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from elbowroom.jit import exact_kernel
 from elbowroom.world.ground.ground import Ground
 from elbowroom.world.ground.sole import Sole, sole_on
-from elbowroom.world.ground.swept import Spot, set_highest_under
+from elbowroom.world.ground.swept import SoleSpot, set_highest_under
 from elbowroom.world.scene import Scene
 
 Floats = NDArray[np.float64]
@@ -22,7 +22,7 @@ LOW += [(-0.3 * n, 0.1 * n, 0.12, 0.12, 0.2) for n in range(1, 4)]
 
 
 @exact_kernel
-def highest(ground: Ground, sole: Sole, begin: Spot, end: Spot, near: float, shares: Floats) -> Floats:
+def highest(ground: Ground, sole: Sole, begin: SoleSpot, end: SoleSpot, near: float, shares: Floats) -> Floats:
     """`set_highest_under`, for who is no kernel."""
     out = np.empty(shares.shape[0])
     set_highest_under(ground, sole, begin, end, near, shares, out)

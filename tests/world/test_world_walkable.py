@@ -8,13 +8,13 @@ from elbowroom.world.scene import Scene
 from elbowroom.world.walkable import (
     FARTHEST,
     MAX_CELLS,
-    Stance,
+    StanceCapsule,
     stance_segments,
     walkable_map,
     walkable_window,
 )
 
-LEGS = Stance(0.18, 0.1, 0.85)
+LEGS = StanceCapsule(0.18, 0.1, 0.85)
 
 
 @pytest.mark.parametrize("name", ["empty", "a", "d"])

@@ -10,7 +10,7 @@ from functools import lru_cache
 import numpy as np
 
 from elbowroom.body.dof import LOCAL, DofGroup, columns_of
-from elbowroom.body.fitting.slim_capsule import Wanted, slimmest
+from elbowroom.body.fitting.slim_capsule import SlimSettings, slimmest
 from elbowroom.body.gait.footholds import UNKNOWN, beside, onward, settled
 from elbowroom.body.gait.gliding import gliding
 from elbowroom.body.gait.living import body_of, living
@@ -44,7 +44,7 @@ from elbowroom.planning.model.levers import body_levers, levers_of
 from elbowroom.planning.model.limb import limb_of
 from elbowroom.planning.model.lowered_legs import LoweredLegs
 from elbowroom.planning.model.self_pairs import with_waist
-from elbowroom.planning.narrow.figure import figure_of
+from elbowroom.planning.narrow.build import build_of
 from elbowroom.planning.narrow.gap import gap_ahead
 from elbowroom.planning.narrow.goals import goals_where_narrow
 from elbowroom.planning.narrow.places import NarrowPlaces
@@ -142,7 +142,7 @@ def rehearse_narrow(humanoid: Humanoid) -> None:
     """Look for a gap between two walls, and for what one would like to do in it."""
     walls = Obstacles.boxes(_JAMBS, [[0.0, 0.0, 0.0, 1.0]] * 2, [[0.5, 1.0, 0.05]] * 2)
     scene, path = replace(Scene.load("empty"), obstacles=walls), _straight_on()
-    narrow = NarrowPlaces(figure_of(humanoid, body_model(humanoid)), scene.free_map)
+    narrow = NarrowPlaces(build_of(humanoid, body_model(humanoid)), scene.free_map)
     goals_where_narrow(narrow, path, natural_walk()(path))
     gap_ahead(narrow, new_line(RootState(), Command(forward=1.0), RootMotionSettings()), 0.0, 0.0, 0.0)
 
@@ -212,7 +212,7 @@ def _one_box(center: tuple[float, ...], half: tuple[float, ...]) -> Obstacles:
 def rehearse_fit() -> None:
     """Fit a capsule, as avatars of one's own need many, and roll an average foot."""
     points = np.random.default_rng(0).normal(size=(9, 3))
-    slimmest(points, points[0], points[1], Wanted(1.0, 0.0, 9))
+    slimmest(points, points[0], points[1], SlimSettings(1.0, 0.0, 9))
     rolled(body_model(Humanoid.default()).gait.legs[0], PITCHES)
 
 

@@ -21,7 +21,7 @@ MAX_CELLS = 250_000
 FARTHEST = 1.0  # metres: greater clearance is not told apart on a map of the whole ground
 
 
-class Stance(NamedTuple):
+class StanceCapsule(NamedTuple):
     """A vertical capsule that stands for legs and pelvis, metres."""
 
     radius: float
@@ -55,12 +55,12 @@ def walkable_map(scene: Scene, radius: float, low: float, high: float, cell: flo
     cell = max(cell, float(np.sqrt(width * depth / MAX_CELLS)) * 1.01)
     shape = (int(depth / cell) + 1, int(width / cell) + 1)
     origin = (scene.ground_center[0] - 0.5 * width, scene.ground_center[1] - 0.5 * depth)
-    return walkable_window(scene.obstacles.standing, Stance(radius, low, high), origin, 0.0, shape, cell)
+    return walkable_window(scene.obstacles.standing, StanceCapsule(radius, low, high), origin, 0.0, shape, cell)
 
 
 def walkable_window(
     near: Nearby,
-    stance: Stance,
+    stance: StanceCapsule,
     origin: tuple[float, float],
     heading: float,
     shape: tuple[int, int],
@@ -80,7 +80,7 @@ def walkable_window(
     return WalkableMap(origin, heading, cell, out)
 
 
-def stance_segments(stance: Stance, x: ArrayLike, z: ArrayLike) -> Floats32:
+def stance_segments(stance: StanceCapsule, x: ArrayLike, z: ArrayLike) -> Floats32:
     """The capsule's axis (1, 6, N) at places `x`, `z` (N,)."""
     across, along = np.asarray(x, np.float32), np.asarray(z, np.float32)
     low, high = np.full_like(across, stance.low), np.full_like(across, stance.high)

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from elbowroom.body.capsules import Capsules
 from elbowroom.body.fitting.body_parts import BodyPoints, leans_on, part_of_points
 from elbowroom.body.fitting.fit import MARGIN, FitSettings
-from elbowroom.body.fitting.flexing import PosedPoints, Poses, poses_of
+from elbowroom.body.fitting.flexing import FlexedPoses, PosedPoints, poses_of
 from elbowroom.body.fitting.proportions import proportional_capsules
 from elbowroom.body.fitting.slim_capsule import Slim
 from elbowroom.body.skeleton import Skeleton
@@ -61,7 +61,9 @@ def coverage(skeleton: Skeleton, capsules: Capsules, samples: BodyPoints) -> Cov
     )
 
 
-def _outside(skeleton: Skeleton, capsules: Capsules, some: list[int], points: PosedPoints, poses: Poses) -> Floats:
+def _outside(
+    skeleton: Skeleton, capsules: Capsules, some: list[int], points: PosedPoints, poses: FlexedPoses
+) -> Floats:
     """How far points (P,) are outside all of some capsules, metres; negative inside."""
     gaps = np.full(len(points.places), np.inf)
     for i in some:

@@ -14,9 +14,9 @@ from numpy.typing import NDArray
 from elbowroom.body.capsules import Capsules
 from elbowroom.body.dof import DofGroup
 from elbowroom.body.fitting.body_parts import PELVIS, SIDES, leans_on, part_of_points
-from elbowroom.body.fitting.flexing import PosedPoints, Poses, poses_of
+from elbowroom.body.fitting.flexing import FlexedPoses, PosedPoints, poses_of
 from elbowroom.body.fitting.proportions import proportional_capsules
-from elbowroom.body.fitting.slim_capsule import Slim, Wanted, slimmest
+from elbowroom.body.fitting.slim_capsule import Slim, SlimSettings, slimmest
 from elbowroom.body.fitting.surface import Surface
 from elbowroom.body.fitting.tips import Limits, Tips, with_tips
 from elbowroom.body.skeleton import Skeleton
@@ -117,7 +117,7 @@ def fit_capsules(skeleton: Skeleton, surface: Surface, settings: FitSettings | N
 
 
 def _tips(
-    skeleton: Skeleton, average: Capsules, surface: Surface, poses: Poses, settings: FitSettings
+    skeleton: Skeleton, average: Capsules, surface: Surface, poses: FlexedPoses, settings: FitSettings
 ) -> dict[str, Tips]:
     """The surface of each part that has any vertices: from the ends of limbs inwards, but thighs last.
 
@@ -172,7 +172,7 @@ def _fitted(own: Floats, first: Slim, name: str, settings: FitSettings) -> _Shap
     low, high = settings.thinnest * first.radius, settings.thickest * first.radius
     some = _some(own, settings.most)
     share = settings.hand_share if name.endswith("Hand") else settings.share
-    loose = _clipped(slimmest(some, first.start, first.end, Wanted(share, 0.0)), low, high)
+    loose = _clipped(slimmest(some, first.start, first.end, SlimSettings(share, 0.0)), low, high)
     loose = _clipped(loose._replace(radius=float(np.quantile(loose.outside(own) + loose.radius, share))), low, high)
     left = own[loose.outside(own) > settings.margin]
     if len(left) <= (1.0 - settings.covered) * len(own):
@@ -189,7 +189,7 @@ def _fitted(own: Floats, first: Slim, name: str, settings: FitSettings) -> _Shap
 def _whole(own: Floats, first: Slim, low: float, high: float, settings: FitSettings) -> Slim:
     """The slimmest capsule round next to all samples."""
     whole = _clipped(
-        slimmest(_some(own, settings.most), first.start, first.end, Wanted(1.0, settings.slack)), low, high
+        slimmest(_some(own, settings.most), first.start, first.end, SlimSettings(1.0, settings.slack)), low, high
     )
     reach = float(np.quantile(whole.outside(own) + whole.radius, settings.held)) - settings.slack
     return whole._replace(radius=float(np.clip(reach, low, high)))
@@ -210,7 +210,9 @@ def _halves(own: Floats, low: float, settings: FitSettings) -> list[tuple[Slim, 
 
 def _round(points: Floats, low: float, settings: FitSettings) -> Slim:
     """The slimmest capsule round all of some points."""
-    found = slimmest(_some(points, settings.most), points.min(axis=0), points.max(axis=0), Wanted(1.0, settings.slack))
+    found = slimmest(
+        _some(points, settings.most), points.min(axis=0), points.max(axis=0), SlimSettings(1.0, settings.slack)
+    )
     reach = float(np.quantile(found.outside(points) + found.radius, settings.held)) - settings.slack
     return found._replace(radius=max(reach, 0.5 * low))
 

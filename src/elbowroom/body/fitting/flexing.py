@@ -46,7 +46,7 @@ class PosedPoints(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False)
-class Poses:
+class FlexedPoses:
     """The joints of a skeleton in all poses, the hips where they are in T-pose; the first is T-pose itself."""
 
     rest: Floats  # (J, 3) where the joints are in T-pose
@@ -86,7 +86,7 @@ class Poses:
         return distances(points.places, starts, ends) - slim.radius
 
 
-def poses_of(skeleton: Skeleton) -> Poses:
+def poses_of(skeleton: Skeleton) -> FlexedPoses:
     """A skeleton in all poses."""
     rest, count = skeleton.positions, len(_POSES)
     turns = np.tile(quaternion.IDENTITY, (count, len(rest), 1))
@@ -96,10 +96,10 @@ def poses_of(skeleton: Skeleton) -> Poses:
             continue
         turns[:, joint] = quaternion.multiply(turns[:, parent], _bent(bone))
         places[:, joint] = places[:, parent] + quaternion.rotate(turns[:, parent], rest[joint] - rest[parent])
-    return Poses(rest, turns, places)
+    return FlexedPoses(rest, turns, places)
 
 
-def flexed(body: BodyMesh, poses: Poses, corners: Ints, shares: Floats, carriers: Ints) -> Floats:
+def flexed(body: BodyMesh, poses: FlexedPoses, corners: Ints, shares: Floats, carriers: Ints) -> Floats:
     """Samples (S, 3) of a T-posed body, each in one of the poses in turn, in the T-posed frame of its carrier.
 
     A sample is the mean of the vertices `corners` (S, 3) with weights `shares` (S, 3), and is carried by a joint (S,).
@@ -116,7 +116,7 @@ def flexed(body: BodyMesh, poses: Poses, corners: Ints, shares: Floats, carriers
     return poses.seen(carriers, PosedPoints(total, pose))
 
 
-def in_turn(count: int, poses: Poses) -> Ints:
+def in_turn(count: int, poses: FlexedPoses) -> Ints:
     """In which of the poses each of so many samples is (S,)."""
     return np.arange(count) % len(poses)
 

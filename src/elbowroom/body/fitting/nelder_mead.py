@@ -14,7 +14,7 @@ from elbowroom.jit import exact_kernel, helper
 Floats = NDArray[np.float64]
 
 
-class Held(NamedTuple):
+class PointsToHold(NamedTuple):
     """What a capsule must hold."""
 
     points: Floats  # (P, 3)
@@ -31,7 +31,7 @@ class Ends(NamedTuple):
 
 
 @exact_kernel
-def volume(ends: Floats, held: Held) -> float:
+def volume(ends: Floats, held: PointsToHold) -> float:
     """Cubic metres of the slimmest capsule with these ends (6,) that holds the nearest `rank` + 1 points."""
     points, along, squared = held.points, ends[3:] - ends[:3], 0.0
     for i in range(3):
@@ -77,7 +77,7 @@ def _middle(simplex: Floats) -> Floats:
 
 
 @exact_kernel
-def least_volume(first: Floats, held: Held, ends: Ends) -> Floats:
+def least_volume(first: Floats, held: PointsToHold, ends: Ends) -> Floats:
     """The ends (6,) of the slimmest capsule found from a first simplex (7, 6), all of which is evaluated."""
     simplex, values = first.copy(), np.empty(first.shape[0])
     for j in range(first.shape[0]):

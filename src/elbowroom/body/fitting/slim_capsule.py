@@ -10,12 +10,12 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.body.fitting.nelder_mead import Ends, Held, least_volume, volume
+from elbowroom.body.fitting.nelder_mead import Ends, PointsToHold, least_volume, volume
 
 Floats = NDArray[np.float64]
 
 
-class Wanted(NamedTuple):
+class SlimSettings(NamedTuple):
     """What a capsule must hold."""
 
     share: float  # of the points
@@ -46,13 +46,13 @@ class Slim(NamedTuple):
         return distances(points, self.start, self.end) - self.radius
 
 
-def slimmest(points: Floats, start: Floats, end: Floats, wanted: Wanted) -> Slim:
+def slimmest(points: Floats, start: Floats, end: Floats, wanted: SlimSettings) -> Slim:
     """The slimmest capsule that holds the points (P, 3) as `wanted`, found from several first guesses.
 
     One of them runs along the axis from `start` to `end`.
     """
     rank = int(np.ceil(wanted.share * (len(points) - 1)))
-    held = Held(np.ascontiguousarray(points, np.float64), rank, wanted.slack)
+    held = PointsToHold(np.ascontiguousarray(points, np.float64), rank, wanted.slack)
     found = [_search(held, guess, wanted.evaluations) for guess in _first_guesses(points, start, end)]
     best = min(found, key=lambda both: volume(both, held))
     away = np.quantile(distances(points, best[:3], best[3:]), wanted.share)
@@ -85,7 +85,7 @@ def _half(points: Floats, direction: Floats) -> Floats:
     return half
 
 
-def _search(held: Held, first: Floats, evaluations: int) -> Floats:
+def _search(held: PointsToHold, first: Floats, evaluations: int) -> Floats:
     step = 0.1 * float(np.ptp(held.points, axis=0).max()) + 1e-6
     simplex = first + np.vstack([np.zeros(6), step * np.eye(6)])
     return least_volume(simplex, held, Ends(evaluations, 1e-4, 1e-8))

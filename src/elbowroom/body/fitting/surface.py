@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from elbowroom.body.bones import SPINE
 from elbowroom.body.fitting.body_mesh import BodyMesh, triangle_areas
 from elbowroom.body.fitting.body_parts import BodyPoints
-from elbowroom.body.fitting.flexing import Poses, flexed, poses_of
+from elbowroom.body.fitting.flexing import FlexedPoses, flexed, poses_of
 from elbowroom.body.pose.hands import relaxed_rotations
 from elbowroom.body.skeleton import Skeleton
 from elbowroom.geometry import quaternion
@@ -73,7 +73,9 @@ def surface_of(body: BodyMesh, skeleton: Skeleton, count: int = SAMPLES) -> Surf
     return Surface(posed, carriers, BodyPoints(places, joints))
 
 
-def _carried(body: BodyMesh, skeleton: Skeleton, poses: Poses, corners: Ints, shares: Floats) -> tuple[Floats, Ints]:
+def _carried(
+    body: BodyMesh, skeleton: Skeleton, poses: FlexedPoses, corners: Ints, shares: Floats
+) -> tuple[Floats, Ints]:
     """Where samples (S, 3) are for the joints that carry them best, and these joints (S,)."""
     joints = _carriers(body, skeleton, corners, shares)
     return flexed(body, poses, corners, shares, joints), joints

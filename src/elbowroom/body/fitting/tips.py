@@ -12,12 +12,12 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.body.fitting.flexing import PosedPoints, Poses
-from elbowroom.body.fitting.slim_capsule import Slim, Wanted, slimmest
+from elbowroom.body.fitting.flexing import FlexedPoses, PosedPoints
+from elbowroom.body.fitting.slim_capsule import Slim, SlimSettings, slimmest
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
-Held = dict[str, tuple[Slim, ...]]  # the capsules of each part
+HeldCapsules = dict[str, tuple[Slim, ...]]  # the capsules of each part
 
 
 def _even_directions(count: int) -> Floats:
@@ -84,9 +84,9 @@ def with_tips(
     slims: Mapping[str, tuple[Slim, ...]],
     joints: Mapping[str, int],
     tips: Mapping[str, Tips],
-    poses: Poses,
+    poses: FlexedPoses,
     limits: Limits,
-) -> Held:
+) -> HeldCapsules:
     """The capsules of each part, so that those of any part hold all vertices of the parts in `tips` in all poses.
 
     Each part rides on one of the `joints`. They are looked at in the order of `tips`, and again while a capsule that is
@@ -108,7 +108,9 @@ def with_tips(
 class _Search:
     """The capsules of all parts, and what is to be held of each: vertices, and samples that were held at first."""
 
-    def __init__(self, held: Held, joints: Mapping[str, int], tips: Mapping[str, Tips], poses: Poses) -> None:
+    def __init__(
+        self, held: HeldCapsules, joints: Mapping[str, int], tips: Mapping[str, Tips], poses: FlexedPoses
+    ) -> None:
         self.held, self._joints, self._tips, self._poses = held, joints, tips, poses
         self._points, self.wanted = dict[str, PosedPoints](), dict[str, _Seen]()
         for name, own in tips.items():
@@ -133,7 +135,7 @@ class _Search:
         return _Seen(self.wanted[name].points[rows], slack[rows])
 
 
-def _to_hold(own: Tips, slims: Sequence[Slim], poses: Poses) -> tuple[PosedPoints, Floats]:
+def _to_hold(own: Tips, slims: Sequence[Slim], poses: FlexedPoses) -> tuple[PosedPoints, Floats]:
     """All that is to be held of a part, and how far each may be outside: vertices, and samples that are held now."""
     kept = np.min([poses.outside(slim, own.joint, own.samples) for slim in slims], axis=0) <= own.loose
     places = np.concatenate([own.vertices.places, own.samples.places[kept]])
@@ -204,7 +206,7 @@ def _round(points: Floats, axis: tuple[Floats, Floats], margin: float) -> Slim:
     """The slimmest capsule round some points (N, 3), sought from an axis."""
     some = points[np.unique(np.argmax(_DIRECTIONS @ points.T, axis=1))]
     for _ in range(_SEARCHES):
-        found = slimmest(some, *axis, Wanted(1.0, margin, _EVALUATIONS))
+        found = slimmest(some, *axis, SlimSettings(1.0, margin, _EVALUATIONS))
         outside = found.outside(points)
         axis, some = (found.start, found.end), np.concatenate([some, points[np.argsort(-outside)[:_FARTHEST]]])
     return found._replace(radius=found.radius + max(float(outside.max()) - margin, 0.0))

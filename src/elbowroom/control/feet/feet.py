@@ -19,7 +19,7 @@ class Around(NamedTuple):
     lasts: bool  # whether all of it stands and can only stand
 
 
-class Look(Protocol):
+class LookAbout(Protocol):
     """How what is about a body is asked for."""
 
     def __call__(self, root: Floats, upper: Floats, axes: Floats32 | None = None) -> Around:
@@ -32,7 +32,7 @@ RoomAlong = Callable[[Floats, Floats, float], float]
 RoomAbove = Callable[[Floats, Floats], float]  # metres from all that legs carry to what stands: a root with feet, upper
 
 
-class Moment(NamedTuple):
+class FeetMoment(NamedTuple):
     """What is known when feet follow."""
 
     shown: Playback  # what is shown
@@ -40,6 +40,6 @@ class Moment(NamedTuple):
     dt: float  # seconds from that to what comes next
     ahead: Floats  # (m, 8) seconds from now and root states that the root is to come to
     room: float  # metres about the whole body as it is shown; negative where that is not looked at
-    look: Look
+    look: LookAbout
     room_along: RoomAlong
     room_above: RoomAbove

@@ -28,7 +28,7 @@ from elbowroom.planning.model.footing import Underfoot, in_world, stood_at
 from elbowroom.world.ground.ground import height_at, level_about
 
 Floats = NDArray[np.float64]
-Place = tuple[float, float, float]  # x, z and yaw as seen from the root
+FootPlace = tuple[float, float, float]  # x, z and yaw as seen from the root
 Lie = tuple[float, float]  # height and slope of what a foot stands on or swings over
 
 NO_GROUND = -math.inf  # the height of no ground
@@ -45,7 +45,7 @@ _BALL, _HEEL = 6, 7  # columns of `GaitShape.legs`
 
 
 @helper
-def level_there(under: Underfoot, row: Floats, foot: Floats, goal: Place) -> float:
+def level_there(under: Underfoot, row: Floats, foot: Floats, goal: FootPlace) -> float:
     """The height of the ground where it is one level under a root, a foot and its goal; minus infinity where not."""
     low_x, high_x = min(0.0, foot[X], goal[0]), max(0.0, foot[X], goal[0])
     low_z, high_z = min(0.0, foot[Z], goal[1]), max(0.0, foot[Z], goal[1])
@@ -56,19 +56,19 @@ def level_there(under: Underfoot, row: Floats, foot: Floats, goal: Place) -> flo
 
 
 @helper
-def _moved(place: Place, ahead: float) -> Place:
+def _moved(place: FootPlace, ahead: float) -> FootPlace:
     return place[0] + ahead * math.sin(place[2]), place[1] + ahead * math.cos(place[2]), place[2]
 
 
 @helper
-def _air(under: Underfoot, row: Floats, foot: Place, ahead: float, lie: Lie) -> float:
+def _air(under: Underfoot, row: Floats, foot: FootPlace, ahead: float, lie: Lie) -> float:
     """How much air is under what is so far `ahead` of the ankle of a foot at a place that lies so there, metres."""
     x, z = in_world(row, foot[0] + ahead * math.sin(foot[2]), foot[1] + ahead * math.cos(foot[2]))
     return lie[0] - ahead * math.tan(lie[1]) - height_at(under.ground, x, z, lie[0])
 
 
 @helper
-def _rank(under: Underfoot, who: Stepper, row: Floats, side: int, foot: Place) -> tuple[int, Lie]:
+def _rank(under: Underfoot, who: Stepper, row: Floats, side: int, foot: FootPlace) -> tuple[int, Lie]:
     """How well a foot would stand at a place, less is better; and how it would lie.
 
     It needs ground under its ankle and where its toes begin, or at least as far as that, not under its toes alone;
@@ -94,7 +94,7 @@ def _rank(under: Underfoot, who: Stepper, row: Floats, side: int, foot: Place) -
 
 @inner_exact_kernel
 def farther_onto(
-    under: Underfoot, who: Stepper, row: Floats, side: int, goal: Place, deepest: float
+    under: Underfoot, who: Stepper, row: Floats, side: int, goal: FootPlace, deepest: float
 ) -> tuple[float, Lie]:
     """How much farther ahead a foot has to land so that it stands on a tread and not across its edge, metres.
 

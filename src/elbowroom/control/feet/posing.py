@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.gait.living import lively
-from elbowroom.control.feet.feet import Moment
+from elbowroom.control.feet.feet import FeetMoment
 from elbowroom.control.feet.following import STEPS, Followed, Gaps
 from elbowroom.control.key_frame_queue import Playback
 
@@ -16,13 +16,13 @@ Floats = NDArray[np.float64]
 _ASKED = 0.01  # metres: more room about legs is not told apart
 NOT_AT_ALL = -1.0  # metres of room in which hips are where they were planned at once
 
-Following = Callable[[Moment, Playback, int], Followed]  # how a pose is followed in a moment, in one of the ways
+Following = Callable[[FeetMoment, Playback, int], Followed]  # how a pose is followed in a moment, in one of the ways
 
 
 class Posing:
     """A pose that is to be shown in a moment, and what is known of how feet follow it."""
 
-    def __init__(self, moment: Moment, posed: Playback, following: Following) -> None:
+    def __init__(self, moment: FeetMoment, posed: Playback, following: Following) -> None:
         self.moment, self.posed = moment, posed
         self._following = following
         self._made: dict[int, Followed] = {}

@@ -24,7 +24,7 @@ from elbowroom.body.root import CARRIAGE, RISES, ROOT_STATE, WITH_FEET
 from elbowroom.clips.motion_set import MotionSet
 from elbowroom.control.feet.above_soles import AboveSoles
 from elbowroom.control.feet.arms_beside_legs import arms_beside_legs
-from elbowroom.control.feet.feet import Moment
+from elbowroom.control.feet.feet import FeetMoment
 from elbowroom.control.feet.feet_ahead import glides_ahead, steps_ahead
 from elbowroom.control.feet.following import GLIDES, HOLDS, STEPS, Followed, Follower, Gaps, followed
 from elbowroom.control.feet.posing import NOT_AT_ALL, Posing
@@ -75,11 +75,11 @@ class Stepping:
         settles = rises < _SAME and settled(self._gait, shown)
         return bool(standing(shown).all() and moved < _SAME) or bool(settles)
 
-    def resting(self, moment: Moment) -> Playback:
+    def resting(self, moment: FeetMoment) -> Playback:
         """What who rests shows next: it breathes, and shifts its weight."""
         return self._alive(moment._replace(ahead=UNKNOWN), moment.shown.root[:WITH_FEET], moment.shown)
 
-    def settling(self, moment: Moment, held: Playback) -> Iterator[Playback]:
+    def settling(self, moment: FeetMoment, held: Playback) -> Iterator[Playback]:
         """How a pose that is held could be shown next, as legs come to a stand: best first.
 
         Arms make way for legs that come to a stand; if that touches they stay, where no arm comes deeper into a leg.
@@ -101,7 +101,7 @@ class Stepping:
             deepest = min(self._arms.room(*moment.shown[:2]), 0.0)
             yield from (pose for pose in stays if self._arms.room(pose.root, pose.upper) >= deepest)
 
-    def next(self, moment: Moment, posed: Playback) -> Playback:
+    def next(self, moment: FeetMoment, posed: Playback) -> Playback:
         """How a pose is shown next, if that is free: see `under`."""
         return self._next(self._posing(moment, posed))
 
@@ -119,7 +119,7 @@ class Stepping:
             upper = self._arms.coming_back(upper, posed.upper, moment.shown.upper - moment.meant, moment.dt)
         return Playback(after.root, upper, posed.upper_velocity)
 
-    def under(self, moment: Moment, played: Sequence[tuple[Playback, Floats]]) -> Iterator[tuple[Playback, Floats]]:
+    def under(self, moment: FeetMoment, played: Sequence[tuple[Playback, Floats]]) -> Iterator[tuple[Playback, Floats]]:
         """Poses that could be shown next, each with its stance (3,), on feet that follow on what is shown.
 
         Where legs have room, and will have some, from the trunk too, feet step to where the root is to come, else they
@@ -139,7 +139,7 @@ class Stepping:
         yield from in_legs
 
     def _ways_under(
-        self, moment: Moment, played: Sequence[tuple[Playback, Floats]]
+        self, moment: FeetMoment, played: Sequence[tuple[Playback, Floats]]
     ) -> Iterator[tuple[Playback, Floats, bool]]:
         """The same, some of them twice, and whether arms are clear of the legs."""
         alive = [(self._posing(moment, posed), stance) for posed, stance in played]
@@ -158,7 +158,7 @@ class Stepping:
                 for way in (apart, *self._less_apart(waiting)):
                     yield way, stance, self._arms.are_clear(way.root, way.upper)
 
-    def _waiting(self, still: Moment, posed: Playback) -> Iterator[Floats]:
+    def _waiting(self, still: FeetMoment, posed: Playback) -> Iterator[Floats]:
         """Root states (SHOWN,) of a pose on feet that wait; first, where one has to go up, on such as do only that."""
         waits = self._made(still._replace(dt=0.0), posed, STEPS).root
         if self._is_strained(waits, posed.upper):
@@ -180,7 +180,7 @@ class Stepping:
             made, posed = still.made(how), still.posed
             yield posed._replace(root=made.root, upper=self._arms.apart(made.root, posed.upper, made.gaps))
 
-    def _off_things(self, moment: Moment, ways: Iterator[Playback]) -> Iterator[Playback]:
+    def _off_things(self, moment: FeetMoment, ways: Iterator[Playback]) -> Iterator[Playback]:
         """The same ways: where one comes so near to what stands that its skin could touch, others that do not first.
 
         Plans keep off what stands; hips that come down to feet, or live, are not where these have them.
@@ -230,7 +230,7 @@ class Stepping:
             yield posed._replace(root=root, upper=upper)
         yield from as_planned
 
-    def _posing(self, moment: Moment, posed: Playback) -> Posing:
+    def _posing(self, moment: FeetMoment, posed: Playback) -> Posing:
         return Posing(moment, posed, self._followed)
 
     def _glides(self, it: Posing) -> Iterator[Floats]:
@@ -270,19 +270,19 @@ class Stepping:
             return steps
         return held if on_held >= max(on_glides - _NO_CLEARER, 0.0) else glides
 
-    def _followed(self, moment: Moment, posed: Playback, how: int) -> Followed:
+    def _followed(self, moment: FeetMoment, posed: Playback, how: int) -> Followed:
         """A pose on feet that follow in one of the ways, with hips, chest and head that live."""
         if how == STEPS or self._footing.plain:
             return self._made(moment, posed, how)
         root = next(raised(moment.shown.root, self._stood(posed.root), moment.dt))
         return self._made(moment, posed._replace(root=root), how)
 
-    def _made(self, moment: Moment, posed: Playback, how: int) -> Followed:
+    def _made(self, moment: FeetMoment, posed: Playback, how: int) -> Followed:
         """The same, where the root tells already how high feet glide."""
         before, coming, root, upper = moment.shown.root, moment.ahead, posed.root, posed.upper
         return Followed(*followed(self._follower, before, root, upper, coming, moment.dt, moment.room, how))
 
-    def _alive(self, moment: Moment, root: Floats, posed: Playback) -> Playback:
+    def _alive(self, moment: FeetMoment, root: Floats, posed: Playback) -> Playback:
         """A pose on a root with feet (WITH_FEET,), with hips, chest and head that live."""
         faces = float(posed.upper[_TWIST] + posed.upper[_HEAD_TURN])
         shown, dt = moment.shown.root, moment.dt

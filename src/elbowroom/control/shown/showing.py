@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from elbowroom.body.gait.footholds import UNKNOWN
 from elbowroom.body.root import RootState
-from elbowroom.control.feet.feet import Around, Moment
+from elbowroom.control.feet.feet import Around, FeetMoment
 from elbowroom.control.key_frame_queue import Playback
 from elbowroom.control.plans.canned import standing_posture
 from elbowroom.control.plans.planning_scene import PlanningScene
@@ -201,10 +201,12 @@ class Showing:
             if lower is not None:
                 yield from feet.settling(moment, lower)
 
-    def _moment(self, dt: float, ahead: Floats = UNKNOWN) -> Moment:
+    def _moment(self, dt: float, ahead: Floats = UNKNOWN) -> FeetMoment:
         """What feet go by; without assistance nothing is looked at, and hips are as planned."""
         check = self._around.check
-        return Moment(self._pose, self._meant, dt, ahead, self._room(), self._look, check.room_along, check.room_above)
+        return FeetMoment(
+            self._pose, self._meant, dt, ahead, self._room(), self._look, check.room_along, check.room_above
+        )
 
     def _room(self) -> float:
         """Metres about the body as it is shown; where ground is not plain, about what the shins carry."""

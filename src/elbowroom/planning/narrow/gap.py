@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.jit import exact_kernel
-from elbowroom.planning.narrow.figure import Figure
+from elbowroom.planning.narrow.build import Build
 from elbowroom.planning.narrow.places import EVERY, MARGIN, NarrowPlaces, beside
 from elbowroom.planning.root.line.line import TravelLine
 from elbowroom.world.obstacles.free_map import Window
@@ -38,14 +38,14 @@ class Gap(NamedTuple):
 def gap_ahead(narrow: NarrowPlaces, line: TravelLine, x: float, z: float, height: float) -> Gap | None:
     """The gap nearest to a line of travel that nobody goes through with hanging arms, for who comes to (x, z) on it."""
     places = narrow.on(_looks(line, line.coordinates(x, z)[0]), height)
-    places = places[places[:, 2] < narrow.figure.broad + MARGIN]
+    places = places[places[:, 2] < narrow.build.broad + MARGIN]
     if not len(places):
         return None
     aside = np.abs(line.coordinates(places[:, 0], places[:, 1])[1])
     near = places[aside < aside.min() + _NEAREST]
     narrowest = near[near[:, 2].argmin()]
     gap_x, gap_z, across_x, across_z = _measured(
-        narrow.window(narrowest[None], height), narrow.figure, (narrowest[0], narrowest[1]), 2.0 * narrow.half
+        narrow.window(narrowest[None], height), narrow.build, (narrowest[0], narrowest[1]), 2.0 * narrow.half
     )
     turned = math.remainder(math.atan2(-across_z, across_x) - line.heading, math.pi)
     return Gap(gap_x, gap_z, line.heading + turned) if abs(turned) < _SLANT else None
@@ -60,7 +60,7 @@ def _looks(line: TravelLine, ahead: float) -> Floats:
 
 @exact_kernel
 def _measured(
-    window: Window, figure: Figure, place: tuple[float, float], far: float
+    window: Window, build: Build, place: tuple[float, float], far: float
 ) -> tuple[float, float, float, float]:
     """The middle of a gap, x and z, and the unit vector across it, from a place in it."""
     x, z, across_x, across_z = place[0], place[1], 1.0, 0.0
@@ -68,8 +68,8 @@ def _measured(
     for _ in range(_ROUNDS):
         for k in range(_DIRECTIONS):
             across_x, across_z = np.cos(np.pi * k / _DIRECTIONS), np.sin(np.pi * k / _DIRECTIONS)
-            broad[k] = beside(window, figure, (x, z), (across_x, across_z), far)
-            broad[k] += beside(window, figure, (x, z), (-across_x, -across_z), far)
+            broad[k] = beside(window, build, (x, z), (across_x, across_z), far)
+            broad[k] += beside(window, build, (x, z), (-across_x, -across_z), far)
         double_x, double_z = 0.0, 0.0
         for k in range(_DIRECTIONS):
             if broad[k] < broad.min() + _ALIKE:
@@ -77,7 +77,7 @@ def _measured(
                 double_z += np.sin(2.0 * np.pi * k / _DIRECTIONS)
         angle = 0.5 * np.arctan2(double_z, double_x)
         across_x, across_z = np.cos(angle), np.sin(angle)
-        one = beside(window, figure, (x, z), (across_x, across_z), far)
-        other = beside(window, figure, (x, z), (-across_x, -across_z), far)
+        one = beside(window, build, (x, z), (across_x, across_z), far)
+        other = beside(window, build, (x, z), (-across_x, -across_z), far)
         x, z = x + 0.5 * (one - other) * across_x, z + 0.5 * (one - other) * across_z
     return x, z, across_x, across_z

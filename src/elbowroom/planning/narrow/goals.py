@@ -14,7 +14,7 @@ from elbowroom.body.gait.smoothstep import smoothstep
 from elbowroom.body.root import HEIGHT
 from elbowroom.jit import exact_kernel, helper, inner_exact_kernel
 from elbowroom.planning.gaze import keeping_gaze
-from elbowroom.planning.narrow.figure import TWIST, Figure
+from elbowroom.planning.narrow.build import TWIST, Build
 from elbowroom.planning.narrow.places import EVERY, MARGIN, NarrowPlaces
 from elbowroom.planning.root.path import RootPath, interpolate_root
 
@@ -40,7 +40,7 @@ def goals_where_narrow(narrow: NarrowPlaces, path: RootPath, goals: Floats) -> F
     places = narrow.on(_ways_of(path.states, path.interval), height)
     if not len(places):
         return goals
-    wanted = _wanted(goals, path.states, places, narrow.figure)
+    wanted = _wanted(goals, path.states, places, narrow.build)
     wanted[:, _HEAD] = keeping_gaze(goals, np.ascontiguousarray(wanted[:, _WAIST]))[:, _HEAD]
     return wanted
 
@@ -81,26 +81,26 @@ def _ways_of(states: Floats, interval: float) -> Floats:
 
 
 @helper
-def _asked(places: Floats, figure: Figure, state: Floats) -> tuple[float, float]:
+def _asked(places: Floats, build: Build, state: Floats) -> tuple[float, float]:
     """How far shoulders are turned, of `TWIST`, and how far arms are drawn in, both 0 to 1, at a root state (7,)."""
     turned, drawn, (x, z) = 0.0, 0.0, _direction(state)
     for k in range(places.shape[0]):
         dx, dz, half = places[k, 0] - state[0], places[k, 1] - state[1], places[k, 2]
         over = (_BEFORE if dx * x + dz * z >= 0.0 else _AFTER) - _HERE
         share = smoothstep(1.0 - (np.hypot(dx, dz) - _HERE) / over)
-        turn = (figure.broad + MARGIN - half) / max(figure.broad - figure.slim, _USE)
-        draw = (figure.swinging + MARGIN - half) / max(figure.swinging - figure.broad, _USE)
+        turn = (build.broad + MARGIN - half) / max(build.broad - build.slim, _USE)
+        draw = (build.swinging + MARGIN - half) / max(build.swinging - build.broad, _USE)
         turned = max(turned, share * min(max(turn, 0.0), 1.0))
         drawn = max(drawn, share * min(max(draw, 0.0), 1.0))
     return turned, drawn
 
 
 @exact_kernel
-def _wanted(goals: Floats, states: Floats, places: Floats, figure: Figure) -> Floats:
+def _wanted(goals: Floats, states: Floats, places: Floats, build: Build) -> Floats:
     """Goals (n+1, LOCAL) with arms drawn in and shoulders turned, to the side to which the hips are turned already."""
     out = goals.copy()
     for t in range(goals.shape[0]):
-        turned, drawn = _asked(places, figure, states[t])
+        turned, drawn = _asked(places, build, states[t])
         x, z = _direction(states[t])
         sine, cosine = np.sin(states[t, 2]), np.cos(states[t, 2])
         hips = np.arctan2(sine * z - cosine * x, abs(sine * x + cosine * z))  # turned from the line of the way

@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.jit import exact_kernel, helper
-from elbowroom.planning.narrow.figure import Figure
+from elbowroom.planning.narrow.build import Build
 from elbowroom.planning.narrow.places import NarrowPlaces, free_on
 from elbowroom.world.obstacles.free_map import CELL, LEVELS, Window
 
@@ -22,11 +22,11 @@ def low_places(narrow: NarrowPlaces, ways: Floats, height: float) -> Floats:
 
     Where nothing is met on a level that makes a way low the levels below are not looked at.
     """
-    lowest = int(np.searchsorted(LEVELS, LEAST * narrow.figure.tall - _UP - _MET))
+    lowest = int(np.searchsorted(LEVELS, LEAST * narrow.build.tall - _UP - _MET))
     above = narrow.around(ways, height, _BESIDE + CELL, (min(lowest, len(LEVELS) - 1), len(LEVELS)))
     if not _is_met(above, ways):
         return np.empty((0, 3))
-    return _low_ones(narrow.around(ways, height, _BESIDE + CELL), narrow.figure, ways)
+    return _low_ones(narrow.around(ways, height, _BESIDE + CELL), narrow.build, ways)
 
 
 @exact_kernel
@@ -43,7 +43,7 @@ def _is_met(window: Window, ways: Floats) -> bool:
 
 
 @exact_kernel
-def _low_ones(window: Window, figure: Figure, ways: Floats) -> Floats:
+def _low_ones(window: Window, build: Build, ways: Floats) -> Floats:
     out, count = np.empty((ways.shape[0], 3)), 0
     for n in range(ways.shape[0]):
         x, z, across_x, across_z = ways[n, 0], ways[n, 1], ways[n, 3], -ways[n, 2]
@@ -51,7 +51,7 @@ def _low_ones(window: Window, figure: Figure, ways: Floats) -> Floats:
         for side in range(-1, 2):
             aside = side * _BESIDE
             room = max(room, _headroom(window, x + aside * across_x, z + aside * across_z))
-        if LEAST * figure.tall < room < figure.tall + SPARE:
+        if LEAST * build.tall < room < build.tall + SPARE:
             out[count, 0], out[count, 1], out[count, 2] = x, z, room
             count += 1
     return out[:count].copy()

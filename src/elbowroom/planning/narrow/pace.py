@@ -9,7 +9,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.planning.narrow.figure import Figure
+from elbowroom.planning.narrow.build import Build
 from elbowroom.planning.narrow.overhead import LEAST, SPARE, low_places
 from elbowroom.planning.narrow.places import EVERY, MARGIN, NarrowPlaces
 from elbowroom.planning.root.line.line import TravelLine
@@ -30,21 +30,21 @@ def slow_places(narrow: NarrowPlaces, line: TravelLine, ahead: float, sight: flo
     They lie at even steps from the line's first point, so they are the same from plan to plan.
     """
     places = narrow.on(_ways(line, ahead, sight), height)
-    lacking = narrow.figure.broad + MARGIN - places[:, 2]
+    lacking = narrow.build.broad + MARGIN - places[:, 2]
     places[:, 2] = np.maximum(1.0 - _LESS * lacking / MARGIN, _LEAST)
     return places[lacking > 0.0]
 
 
 def slow_under(narrow: NarrowPlaces, line: TravelLine, ahead: float, sight: float, height: float) -> Floats:
     """Low places (K, 3), as `slow_places` has narrow ones."""
-    places, tall = low_places(narrow, _ways(line, ahead, sight), height), narrow.figure.tall
+    places, tall = low_places(narrow, _ways(line, ahead, sight), height), narrow.build.tall
     places[:, 2] = np.maximum(1.0 - _DUCKED * (tall + SPARE - places[:, 2]) / tall, _LEAST)
     return places
 
 
-def hanging(figure: Figure, ground: Ground) -> Span:
+def hanging(build: Build, ground: Ground) -> Span:
     """The heights in which something may hang that makes a way low; anywhere, where the ground is not plain."""
-    return (LEAST * figure.tall, figure.tall + SPARE) if ground.plain else EVERY_HEIGHT
+    return (LEAST * build.tall, build.tall + SPARE) if ground.plain else EVERY_HEIGHT
 
 
 def _ways(line: TravelLine, ahead: float, sight: float) -> Floats:

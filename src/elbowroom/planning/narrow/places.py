@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.jit import exact_kernel, inner_exact_kernel
-from elbowroom.planning.narrow.figure import Figure
+from elbowroom.planning.narrow.build import Build
 from elbowroom.world.obstacles.free_map import CELL, EVERY_LEVEL, FreeMap, Levels, Window
 
 Floats = NDArray[np.float64]
@@ -21,9 +21,9 @@ _BODY = 0.5  # of the least half breadth: where what stands is nearer than that 
 class NarrowPlaces:
     """Finds narrow places for one body among what stands."""
 
-    def __init__(self, figure: Figure, free_map: FreeMap) -> None:
-        self.figure, self._map = figure, free_map
-        self.half = figure.swinging + MARGIN  # metres: half the distance of two things between which nobody minds any
+    def __init__(self, build: Build, free_map: FreeMap) -> None:
+        self.build, self._map = build, free_map
+        self.half = build.swinging + MARGIN  # metres: half the distance of two things between which nobody minds any
 
     def on(self, ways: Floats, height: float) -> Floats:
         """The narrow ones (K, 3) of ways (N, 4): places x, z and half the distance of what stands to both sides.
@@ -31,11 +31,11 @@ class NarrowPlaces:
         A way has a place and the direction in which one walks there, a unit vector. To the first one comes from a
         `height`.
         """
-        return _narrow_ones(self.window(ways, height), self.figure, self.half, ways)
+        return _narrow_ones(self.window(ways, height), self.build, self.half, ways)
 
     def window(self, ways: Floats, height: float) -> Window:
         """The part of the map beside ways (N, 4), as far as a gap is broad, between elbows and shoulders."""
-        return self.around(ways, height, 2.0 * self.half, (self.figure.low, self.figure.high))
+        return self.around(ways, height, 2.0 * self.half, (self.build.low, self.build.high))
 
     def around(self, ways: Floats, height: float, aside: float, levels: Levels = EVERY_LEVEL) -> Window:
         """The part of the map that is no farther than so many metres from ways (N, 4), on some levels."""
@@ -44,14 +44,14 @@ class NarrowPlaces:
 
 
 @exact_kernel
-def _narrow_ones(window: Window, figure: Figure, half: float, ways: Floats) -> Floats:
+def _narrow_ones(window: Window, build: Build, half: float, ways: Floats) -> Floats:
     out, count, far = np.empty((ways.shape[0], 3)), 0, 2.0 * half
     for n in range(ways.shape[0]):
         place, across = (ways[n, 0], ways[n, 1]), (ways[n, 3], -ways[n, 2])
-        inside = free_at(window, figure, place[0], place[1]) < _BODY * figure.slim
-        left = far if inside else beside(window, figure, place, across, far)
+        inside = free_at(window, build, place[0], place[1]) < _BODY * build.slim
+        left = far if inside else beside(window, build, place, across, far)
         if left < far:
-            both = left + beside(window, figure, place, (-across[0], -across[1]), far - left)
+            both = left + beside(window, build, place, (-across[0], -across[1]), far - left)
             if both < far:
                 out[count, 0], out[count, 1], out[count, 2] = ways[n, 0], ways[n, 1], 0.5 * both
                 count += 1
@@ -59,14 +59,14 @@ def _narrow_ones(window: Window, figure: Figure, half: float, ways: Floats) -> F
 
 
 @exact_kernel
-def beside(window: Window, figure: Figure, place: tuple[float, float], aside: tuple[float, float], far: float) -> float:
+def beside(window: Window, build: Build, place: tuple[float, float], aside: tuple[float, float], far: float) -> float:
     """Metres from a place in the direction `aside` to what stands there; `far` if that is farther.
 
     Each look leads as far on as nothing is near.
     """
     gone = 0.0
     for _ in range(_LOOKS):
-        free = free_at(window, figure, place[0] + gone * aside[0], place[1] + gone * aside[1])
+        free = free_at(window, build, place[0] + gone * aside[0], place[1] + gone * aside[1])
         if free < _TOUCH:
             return float(min(gone + max(free - _COARSE, 0.0), far))
         gone += free
@@ -76,10 +76,10 @@ def beside(window: Window, figure: Figure, place: tuple[float, float], aside: tu
 
 
 @inner_exact_kernel
-def free_at(window: Window, figure: Figure, x: float, z: float) -> float:
-    """The free distance at a place, bilinear, at the levels of a figure; the window's edge holds outside."""
+def free_at(window: Window, build: Build, x: float, z: float) -> float:
+    """The free distance at a place, bilinear, at the levels of a build; the window's edge holds outside."""
     least = np.inf
-    for n in range(figure.low, figure.high):
+    for n in range(build.low, build.high):
         least = min(least, free_on(window, n, x, z))
     return float(least)
 

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.errors import InputError
 from elbowroom.planning.model.highest_step import as_climbed, as_stepped
-from elbowroom.planning.navigation.field import Prices
+from elbowroom.planning.navigation.cost_field import MetrePrices
 from elbowroom.planning.navigation.girth import girth_of
 from elbowroom.planning.navigation.room_map import Rectangle, RoomMap, ground_of, room_map
 from elbowroom.planning.navigation.way import (
@@ -81,7 +81,7 @@ class Navigator:
         return reachable_over(self.room(), self.prices, placed(start, 0.0))
 
     @property
-    def prices(self) -> Prices:
+    def prices(self) -> MetrePrices:
         """What ways cost."""
         return self._walked.prices
 
@@ -92,7 +92,7 @@ class _Finder:
     def __init__(self, humanoid: Humanoid, scene: Scene) -> None:
         self._scene = scene
         self._girth, self._ground = girth_of(humanoid), ground_of(scene)
-        self.prices = Prices(self._girth.slim)  # what ways cost
+        self.prices = MetrePrices(self._girth.slim)  # what ways cost
         self._known: RoomMap | None = None
         self._lock = Lock()
 

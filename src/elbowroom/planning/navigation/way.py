@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.errors import InputError
-from elbowroom.planning.navigation.field import Costly, Field, Prices, aim_from, field_to, straight_cost
+from elbowroom.planning.navigation.cost_field import CostField, Costly, MetrePrices, aim_from, field_to, straight_cost
 from elbowroom.planning.navigation.room_map import RoomMap
 
 Floats = NDArray[np.float64]
@@ -64,8 +64,8 @@ class Way:
 
     goal: Place
     room: RoomMap
-    prices: Prices
-    field: Field
+    prices: MetrePrices
+    field: CostField
     climbs: bool = False  # over what is too high for a step
 
     def left(self, place: Place | Spot) -> float:
@@ -127,7 +127,9 @@ class Way:
         return nearest_of(self.room, np.isfinite(self.field.cost), place, _BESIDE)
 
 
-def way_over(room: RoomMap, prices: Prices, start: Place, goal: Place, closed: Sequence[tuple[Spot, float]]) -> Way:
+def way_over(
+    room: RoomMap, prices: MetrePrices, start: Place, goal: Place, closed: Sequence[tuple[Spot, float]]
+) -> Way:
     """The way over a map from a start to a goal, around discs that are closed (middle, radius).
 
     Raises `NoWayError` where one of them is no place to stand, or nothing leads from one to the other.
@@ -149,7 +151,7 @@ def way_over(room: RoomMap, prices: Prices, start: Place, goal: Place, closed: S
     return Way((goal[0], room.place(last)[1], goal[2]), room, prices, field)
 
 
-def reachable_over(room: RoomMap, prices: Prices, start: Place) -> NDArray[np.bool_]:
+def reachable_over(room: RoomMap, prices: MetrePrices, start: Place) -> NDArray[np.bool_]:
     """The places of a map (N,) that a way leads to from a place; none where nothing leads away from it."""
     free = room.room >= prices.slim
     begin = nearest_of(room, free, start, _BESIDE)

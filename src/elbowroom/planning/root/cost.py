@@ -15,7 +15,7 @@ Floats = NDArray[np.float64]
 
 SLOW = 0.1  # m/s: who wants to go no faster is in no hurry
 
-Figure = tuple[float, float]  # half the breadth of a body that stands with hanging arms, and its height, metres
+BodySize = tuple[float, float]  # half the breadth of a body that stands with hanging arms, and its height, metres
 
 
 class Prices(NamedTuple):
@@ -41,23 +41,23 @@ def seconds_lost(
     *,
     ends: bool,
     around: MovingAround,
-    figure: Figure,
+    size: BodySize,
 ) -> float:
     """What a path costs, states (n+1, 7) of `duration` seconds, against the line of travel at the wanted speed.
 
     `ends` says that its route ends before something.
     """
     lost = lost_on_line(prices_of(settings), line, speed, states, duration, ends)
-    return lost if speed < SLOW else crowded(settings, lost, line, states, around, figure)
+    return lost if speed < SLOW else crowded(settings, lost, line, states, around, size)
 
 
 def crowded(
-    settings: RootPlannerSettings, lost: float, line: TravelLine, states: Floats, around: MovingAround, figure: Figure
+    settings: RootPlannerSettings, lost: float, line: TravelLine, states: Floats, around: MovingAround, size: BodySize
 ) -> float:
     """What a path, states (n+1, 7), costs that loses so many seconds, with what moves beside it."""
     if not around:
         return lost
-    crowd = settings.crowded * max(settings.polite - around.gap(states, *figure), 0.0)
+    crowd = settings.crowded * max(settings.polite - around.gap(states, *size), 0.0)
     return lost + settings.wrong_side * _leftward(line, states) + crowd
 
 

@@ -15,11 +15,11 @@ from elbowroom.body.gait.stride import quickness
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.pose.kinematics import BodyModel, posture_capsules
 from elbowroom.body.root import ROOT_STATE
-from elbowroom.planning.narrow.figure import figure_of
+from elbowroom.planning.narrow.build import build_of
 from elbowroom.planning.narrow.gap import gap_ahead
 from elbowroom.planning.narrow.pace import hanging, slow_places, slow_under
 from elbowroom.planning.narrow.places import NarrowPlaces
-from elbowroom.planning.root.cost import SLOW, Figure, crowded, prices_of, seconds_lost
+from elbowroom.planning.root.cost import SLOW, BodySize, crowded, prices_of, seconds_lost
 from elbowroom.planning.root.evasion.evasion import Evasion, EvasionFinder
 from elbowroom.planning.root.evasion.profile import Profile
 from elbowroom.planning.root.legs.hull import route_is_open
@@ -29,12 +29,12 @@ from elbowroom.planning.root.legs.moving_legs import MovingAround
 from elbowroom.planning.root.line.ahead import NONE_TIGHT, Above, RouteFinder
 from elbowroom.planning.root.line.climbing import places_along, places_on, steep_places
 from elbowroom.planning.root.line.line import TravelLine, straight_route, wanted_speed, wanted_velocities
-from elbowroom.planning.root.line.straight_walk import Stretch, Walker, straight_walk
+from elbowroom.planning.root.line.straight_walk import Outlook, Walker, straight_walk
 from elbowroom.planning.root.line.way_ahead import Corners, line_of, way_ahead
 from elbowroom.planning.root.motion import NONE_SLOW, SLOWED_FROM, MotionBounds
 from elbowroom.planning.root.path import RootPath
 from elbowroom.planning.root.plan import RootPlan, RootPlanKind, RootPlannerSettings
-from elbowroom.planning.root.query import Answer, Asked, RootQuery
+from elbowroom.planning.root.query import Asked, PathDraft, RootQuery
 from elbowroom.planning.stillness import STILL
 from elbowroom.world.obstacles.tracks.moving import Moving
 from elbowroom.world.scene import Scene
@@ -60,12 +60,12 @@ class RootPaths:
         self._check = LegCheck(body, self.bounds, settings.skin, settings.spacing)
         self._routes = RouteFinder(settings, body, above)
         self._walker = Walker(
-            self.bounds, self._routes.half, settings.skin, body.hull, body.ground, body.grids, prices_of(settings)
+            self.bounds, self._routes.half, settings.skin, body.hull, body.boxes, body.grids, prices_of(settings)
         )
         self.evasions = tuple(EvasionFinder(humanoid, scene, grid) for grid in (settings.evasion, settings.wide))
-        self._figure = _figure(body.model)
-        self._narrow = NarrowPlaces(figure_of(humanoid, body.model), scene.free_map)
-        self._obstacles, self._hanging = scene.obstacles, hanging(self._narrow.figure, scene.ground)
+        self._size = _size(body.model)
+        self._narrow = NarrowPlaces(build_of(humanoid, body.model), scene.free_map)
+        self._obstacles, self._hanging = scene.obstacles, hanging(self._narrow.build, scene.ground)
         self._scenes = scene.obstacles.moving
         self.others = Moving()
         self._slow_legs: tuple[Corners, dict[int, Floats]] = (), {}
@@ -125,15 +125,15 @@ class RootPaths:
     def stopped(self, asked: Asked) -> RootPlan:
         """To a stand, or out of the way of what comes."""
         began, query = perf_counter_ns(), self._query(asked)
-        before, answer = query.checks, query.stopped()
-        return _plan(asked, answer, query.checks - before, began)
+        before, draft = query.checks, query.stopped()
+        return _plan(asked, draft, query.checks - before, began)
 
     def steered(self, asked: Asked, pace: float) -> RootPlan:
         """As a user turns the body by hand."""
         began, query = perf_counter_ns(), self._query(asked)
         before = query.checks
-        answer = query.steered(pace * wanted_velocities(asked.command, self.settings.motion))
-        return _plan(asked, answer, query.checks - before, began)
+        draft = query.steered(pace * wanted_velocities(asked.command, self.settings.motion))
+        return _plan(asked, draft, query.checks - before, began)
 
     def travelled(self, asked: Asked, line: TravelLine, pace: float, *, through: bool = False) -> RootPlan:
         """Along a line of travel, round gaps in it where there is room for that, or `through` them."""
@@ -145,17 +145,17 @@ class RootPaths:
         slow = self._with_steep(slow, asked, places_on(line, ahead, sight), speed)
         tight = NONE_TIGHT if through or not line.turns else narrow
         if not self._moving.tracks and self._routes.above is None and not len(tight):
-            stretch = Stretch(asked.horizon, asked.interval, sight, self._reach(asked.horizon * asked.interval))
+            outlook = Outlook(asked.horizon, asked.interval, sight, self._reach(asked.horizon * asked.interval))
             start = asked.start.as_array()
-            free, states, stands, lost, x, z = straight_walk(self._walker, start, line, speed, pace, stretch, slow)
+            free, states, stands, lost, x, z = straight_walk(self._walker, start, line, speed, pace, outlook, slow)
             if free:
                 kind = RootPlanKind.STOPPED if stands else RootPlanKind.STRAIGHT
-                answer = Answer(states, kind, (x, z), ends=False, share=0.0 if stands else 1.0)
-                return _plan(asked, answer.at(pace), 0, began, lost)
+                draft = PathDraft(states, kind, (x, z), ends=False, share=0.0 if stands else 1.0)
+                return _plan(asked, draft.at(pace), 0, began, lost)
         query = self._query(asked)
         before = query.checks
-        answer = query.travelled(line, pace * speed, sight, slow, tight=tight).at(pace)
-        return _plan(asked, answer, query.checks - before, began, self._lost(asked, line, speed, answer))
+        draft = query.travelled(line, pace * speed, sight, slow, tight=tight).at(pace)
+        return _plan(asked, draft, query.checks - before, began, self._lost(asked, line, speed, draft))
 
     def along(self, asked: Asked, leg: int, pace: float) -> RootPlan:
         """Along the way that the command names, from its leg of this number on."""
@@ -166,13 +166,13 @@ class RootPaths:
         slow = self._with_steep(slow, asked, places_along(way, ahead.legs), speed)
         query = self._query(asked)
         before = query.checks
-        answer = query.travelled(line, pace * speed, self._sight(asked, speed), slow, ahead).at(pace)
-        lost = self._lost(asked, line, speed, answer)
-        if answer.likewise is not None:
-            lost = max(_walked(answer.likewise) - _walked(answer.states), 0.0) / max(speed, SLOW)
+        draft = query.travelled(line, pace * speed, self._sight(asked, speed), slow, ahead).at(pace)
+        lost = self._lost(asked, line, speed, draft)
+        if draft.likewise is not None:
+            lost = max(_walked(draft.likewise) - _walked(draft.states), 0.0) / max(speed, SLOW)
             lost += (1.0 - pace) * asked.horizon * asked.interval
-            lost = crowded(self.settings, lost, line, answer.states, query.around, self._figure)
-        return _plan(asked, answer, query.checks - before, began, lost)
+            lost = crowded(self.settings, lost, line, draft.states, query.around, self._size)
+        return _plan(asked, draft, query.checks - before, began, lost)
 
     def _with_steep(self, slow: Floats, asked: Asked, places: Floats, speed: float) -> Floats:
         """Slow places (K, 3), and those of some (N, 2) where it is steep at the wanted speed."""
@@ -195,7 +195,7 @@ class RootPaths:
         start, reach = asked.start, self._reach(asked.horizon * asked.interval)
         near = self._check.body.near(start.x, start.z, reach, start.height)
         route = straight_route(float(start.x), float(start.z), line, sight)
-        if near.empty or route_is_open(route, start.height, self._narrow.half, near.ground):
+        if near.empty or route_is_open(route, start.height, self._narrow.half, near.boxes):
             return NONE_SLOW
         return slow_places(self._narrow, line, line.coordinates(start.x, start.z)[0], sight, start.height)
 
@@ -244,10 +244,10 @@ class RootPaths:
                 if any(np.array_equal(found.profile.rows, other.rows) for other in profiles):
                     break
                 profiles.append(found.profile)
-                answer = query.evaded(along, found, speed, sideways)
-                checks, lost = grid.cells + query.checks - before, self._lost(asked, line, speed, answer)
-                yield _plan(asked, answer, checks, began, lost), found
-                if answer.whole:
+                draft = query.evaded(along, found, speed, sideways)
+                checks, lost = grid.cells + query.checks - before, self._lost(asked, line, speed, draft)
+                yield _plan(asked, draft, checks, began, lost), found
+                if draft.whole:
                     break
 
     def followed(
@@ -256,18 +256,18 @@ class RootPaths:
         """What is left of an evasion that was found, as for `evaded`; None if it is not free, or ends too soon."""
         began, query, speed = perf_counter_ns(), self._query(asked), wanted_speed(asked.command, self.settings.motion)
         before, sideways = query.checks, share * min(speed, self.settings.evasion.sideways)
-        answer = query.evaded(along, Evasion(profile, True, 0.0), speed, sideways)
+        draft = query.evaded(along, Evasion(profile, True, 0.0), speed, sideways)
         end = profile.first + profile.step * (len(profile.rows) - 1)
-        beyond = along.coordinates(*answer.states[-1, :2].tolist())[0] > end
-        if beyond or not answer.whole or answer.kind is RootPlanKind.STOPPED:
+        beyond = along.coordinates(*draft.states[-1, :2].tolist())[0] > end
+        if beyond or not draft.whole or draft.kind is RootPlanKind.STOPPED:
             return None
-        return _plan(asked, answer, query.checks - before, began, self._lost(asked, line, speed, answer))
+        return _plan(asked, draft, query.checks - before, began, self._lost(asked, line, speed, draft))
 
     def steps_aside(self, asked: Asked) -> Iterator[RootPlan]:
         """Short steps out of the way of what moves."""
         place = asked.start.x, asked.start.z
         for states in self._query(asked).steps_aside():
-            yield _plan(asked, Answer(states, RootPlanKind.EVASION, place, False), 0, perf_counter_ns())
+            yield _plan(asked, PathDraft(states, RootPlanKind.EVASION, place, False), 0, perf_counter_ns())
 
     def short_steps(self, asked: Asked, velocities: Floats, moving: int) -> Floats:
         """Steps (k, n+1, 7), free or not, that hold `velocities` (k, 3) for so many key intervals, and then brake."""
@@ -295,18 +295,18 @@ class RootPaths:
         around, place = self._query(asked).around, np.array([[asked.start.x, asked.start.z]])
         return bool(around) and not around.standing.around(place, _NEAR).empty
 
-    def _lost(self, asked: Asked, line: TravelLine, speed: float, answer: Answer) -> float:
+    def _lost(self, asked: Asked, line: TravelLine, speed: float, draft: PathDraft) -> float:
         duration, around = asked.horizon * asked.interval, self._query(asked).around
-        if answer.beside:
-            return crowded(self.settings, 0.0, line, answer.states, around, self._figure)
-        states, ends = answer.states if answer.brisk is None else answer.brisk, answer.ends
-        return seconds_lost(self.settings, line, speed, states, duration, ends=ends, around=around, figure=self._figure)
+        if draft.beside:
+            return crowded(self.settings, 0.0, line, draft.states, around, self._size)
+        states, ends = draft.states if draft.brisk is None else draft.brisk, draft.ends
+        return seconds_lost(self.settings, line, speed, states, duration, ends=ends, around=around, size=self._size)
 
 
-def _plan(asked: Asked, answer: Answer, checks: int, began: int, lost: float = 0.0) -> RootPlan:
-    path = RootPath(asked.start_time, asked.interval, answer.states)
-    spent, beside, free, pace = perf_counter_ns() - began, answer.beside, answer.free, answer.share
-    return RootPlan(path, answer.kind, answer.goal, checks, spent, lost, beside, free, pace)
+def _plan(asked: Asked, draft: PathDraft, checks: int, began: int, lost: float = 0.0) -> RootPlan:
+    path = RootPath(asked.start_time, asked.interval, draft.states)
+    spent, beside, free, pace = perf_counter_ns() - began, draft.beside, draft.free, draft.share
+    return RootPlan(path, draft.kind, draft.goal, checks, spent, lost, beside, free, pace)
 
 
 def _walked(states: Floats) -> float:
@@ -314,7 +314,7 @@ def _walked(states: Floats) -> float:
     return float(np.hypot(*np.diff(states[:, :2], axis=0).T).sum())
 
 
-def _figure(model: BodyModel) -> Figure:
+def _size(model: BodyModel) -> BodySize:
     """Half the breadth of a body that stands with hanging arms, and its height, metres."""
     ends = posture_capsules(model, np.zeros((1, DOF)), np.zeros((1, ROOT_STATE))).reshape(-1, 2, 3)
     reach = np.abs(ends).max(axis=1) + model.body.radii[:, None]

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from elbowroom.body.root import HEIGHT, ROOT_STATE, RootState
 from elbowroom.planning.command import Command
 from elbowroom.planning.root.evasion.evasion import Evasion
-from elbowroom.planning.root.evasion.profile import Course, follow_profile
+from elbowroom.planning.root.evasion.profile import PacedLine, follow_profile
 from elbowroom.planning.root.legs.leg_check import FreeLegs, LegCheck
 from elbowroom.planning.root.legs.moving_legs import MovingAround
 from elbowroom.planning.root.legs.neighbours import Neighbours
@@ -41,7 +41,7 @@ class Asked(NamedTuple):
     start_time: float = 0.0  # seconds
 
 
-class Answer(NamedTuple):
+class PathDraft(NamedTuple):
     """What a path is going to be made of."""
 
     states: Floats  # (n+1, 7)
@@ -55,7 +55,7 @@ class Answer(NamedTuple):
     free: bool = True  # whether nothing that moves comes into it
     share: float = 0.0  # of the speed that was asked for, at which it is walked on to its end; 0 where it is not
 
-    def at(self, pace: float) -> "Answer":
+    def at(self, pace: float) -> "PathDraft":
         """The same of who asked for this share of the wanted speed."""
         return self._replace(share=pace * self.share)
 
@@ -180,10 +180,12 @@ class RootQuery:
         """The clearance (N,) of legs and pelvis from what stands, in states (N, 7)."""
         return self._legs.rooms(states)
 
-    def stopped(self) -> Answer:
+    def stopped(self) -> PathDraft:
         """Stand, or step out of the way of what comes."""
         found = self._given_way if self.around else _Best(self._stopped())
-        return Answer(found.states, RootPlanKind.STRAIGHT, _place(found.states[0]), False, free=found.free, share=1.0)
+        return PathDraft(
+            found.states, RootPlanKind.STRAIGHT, _place(found.states[0]), False, free=found.free, share=1.0
+        )
 
     def _stopped(self) -> Floats:
         """Brake, harder if need be; at last stand still at once."""
@@ -199,7 +201,7 @@ class RootQuery:
         states[:, 3:6] = states[:, HEIGHT + 1] = 0.0
         return states
 
-    def steered(self, wanted: Floats) -> Answer:
+    def steered(self, wanted: Floats) -> PathDraft:
         """Hold the wanted velocities in the body's own axes, in a tighter turn or slower if need be."""
         on_the_spot = is_still(wanted[:2])
 
@@ -212,7 +214,7 @@ class RootQuery:
         if not on_the_spot:
             states = self._crept(states, candidate)
         kind = self._kind(states, whole=number == 0, detour=False)
-        return Answer(states, kind, _place(states[-1]), False, free=free, share=self._share_of(number, kind))
+        return PathDraft(states, kind, _place(states[-1]), False, free=free, share=self._share_of(number, kind))
 
     def _share_of(self, number: int, kind: RootPlanKind) -> float:
         """The share of the speed at which a path is walked to its end that is one of those tried, as a whole."""
@@ -226,7 +228,7 @@ class RootQuery:
         slow: Floats = NONE_SLOW,
         way: WayAhead | None = None,
         tight: Floats = NONE_TIGHT,
-    ) -> Answer:
+    ) -> PathDraft:
         """Walk along the line of travel, of which `sight` metres are checked, or round what stands in it.
 
         It is slower at `slow` places, as in `Travel`, and leads round `tight` ones where there is room. Or it is walked
@@ -248,7 +250,7 @@ class RootQuery:
         states, number, free = self._best(map(at, self.settings.slower))
         crept = self._crept(states, creeping)
         kind = self._kind(crept, whole=number == 0, detour=route.detour)
-        return Answer(
+        return PathDraft(
             crept,
             kind,
             _place(route.corners[-1]),
@@ -282,14 +284,14 @@ class RootQuery:
             self._places += self._route[1].checks
         return self._route[1]
 
-    def evaded(self, line: TravelLine, evasion: Evasion, speed: float, sideways: float) -> Answer:
+    def evaded(self, line: TravelLine, evasion: Evasion, speed: float, sideways: float) -> PathDraft:
         """Walk along an evasion from a line at speeds forward and sideways, or as much of it as is free."""
         profile, s = evasion.profile, self.settings.evasion
 
         def candidate(share: float) -> Floats:
             states, ahead = self._blank(), share * speed
-            course = Course(line.x, line.z, line.heading, line.facing, ahead, share * sideways, not evasion.whole)
-            follow_profile(states, profile.rows, profile.first, profile.step, course, self.interval, self.bounds)
+            paced = PacedLine(line.x, line.z, line.heading, line.facing, ahead, share * sideways, not evasion.whole)
+            follow_profile(states, profile.rows, profile.first, profile.step, paced, self.interval, self.bounds)
             return states
 
         states, number, free = self._best(candidate(share) for share in s.shares)
@@ -297,7 +299,7 @@ class RootQuery:
         stands = self._kind(states, whole=True, detour=False) is RootPlanKind.STOPPED
         kind = RootPlanKind.STOPPED if stands else RootPlanKind.EVASION
         place, ends = line.point(ahead, float(profile.rows[-1, 0])), not evasion.whole
-        return Answer(states, kind, place, ends, number >= 0, free=free)
+        return PathDraft(states, kind, place, ends, number >= 0, free=free)
 
     def _kind(self, states: Floats, *, whole: bool, detour: bool) -> RootPlanKind:
         if gets_nowhere(states):

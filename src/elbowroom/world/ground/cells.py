@@ -21,7 +21,7 @@ _X, _Z, _CORNERS = plain(0), plain(2), plain(3)  # axes over the ground, and wha
 _CORNERS_AT = [0, 1, 3, 4, 5, 6]  # x and z of a triangle's corners among what `planes_of` has of it
 
 
-class Grid(NamedTuple):
+class CellGrid(NamedTuple):
     """Cells over the ground; metres."""
 
     corner: tuple[float, float]  # x, z
@@ -34,7 +34,7 @@ class Grid(NamedTuple):
         return self.shape[0] * self.shape[1]
 
 
-class Parts(NamedTuple):
+class CellParts(NamedTuple):
     """Parts (M,) of triangles in cells."""
 
     cells: Ints  # in which cell each is
@@ -43,7 +43,7 @@ class Parts(NamedTuple):
     tops: Floats32  # how high it comes there, at most
 
 
-def grid_over(triangles: Floats, floor: FloorArea | None) -> Grid:
+def grid_over(triangles: Floats, floor: FloorArea | None) -> CellGrid:
     """Cells over all of the triangles (T, 3, 3) and the floor, as small as their number and that of parts allows."""
     flat = triangles[:, :, [0, 2]]
     least, most = flat.min(axis=(0, 1)), flat.max(axis=(0, 1))
@@ -53,19 +53,19 @@ def grid_over(triangles: Floats, floor: FloorArea | None) -> Grid:
     cell = max(_CELL, float(np.sqrt(np.prod(most - least + _CELL) / _MOST_CELLS)))
     while True:
         wide, deep = (int(size / cell) + 1 for size in (most - least).tolist())
-        grid = Grid((float(least[0]), float(least[1])), cell, (wide, deep))
+        grid = CellGrid((float(least[0]), float(least[1])), cell, (wide, deep))
         if _count(_spans(flat, grid)) <= _MOST_PARTS:
             return grid
         cell *= 2.0
 
 
-def parts_of(planes: Floats, grid: Grid, first: int = 0) -> Parts:
+def parts_of(planes: Floats, grid: CellGrid, first: int = 0) -> CellParts:
     """The parts of triangles (T, 10), as `Ground` has them and numbered from `first`, in the cells of a grid."""
     spans = _spans(planes[:, _CORNERS_AT].reshape(-1, 3, 2), grid)
-    return Parts(*_parts_in(planes, spans, _count(spans), (*grid.corner, grid.cell), grid.shape[1], first))
+    return CellParts(*_parts_in(planes, spans, _count(spans), (*grid.corner, grid.cell), grid.shape[1], first))
 
 
-def cell_by_cell(parts: Parts, grid: Grid) -> tuple[Longs, Longs, Floats32, Floats32]:
+def cell_by_cell(parts: CellParts, grid: CellGrid) -> tuple[Longs, Longs, Floats32, Floats32]:
     """The parts of each cell together, those first that begin higher: `Ground`'s starts, members, bottoms and tops."""
     order = np.lexsort((-parts.bottoms, parts.cells))
     starts = np.concatenate([[0], np.bincount(parts.cells, minlength=grid.cells).cumsum()])
@@ -74,7 +74,7 @@ def cell_by_cell(parts: Parts, grid: Grid) -> tuple[Longs, Longs, Floats32, Floa
     return starts, parts.triangles[order].astype(np.int64), parts.bottoms[order], tops
 
 
-def _spans(flat: Floats, grid: Grid) -> Longs:
+def _spans(flat: Floats, grid: CellGrid) -> Longs:
     """The first and the last cell along x, and along z, (T, 4) of triangles (T, 3, 2) seen from above."""
     low = np.floor((flat.min(axis=1) - grid.corner) / grid.cell).astype(np.int64)
     high = np.floor((flat.max(axis=1) - grid.corner) / grid.cell).astype(np.int64)
@@ -92,7 +92,7 @@ def _count(spans: Longs) -> int:
 def _parts_in(
     planes: Floats, spans: Longs, most: int, grid: tuple[float, float, float], deep: int, first: int
 ) -> tuple[Ints, Ints, Floats32, Floats32]:
-    """What `Parts` has of triangles that are in the cells of their spans (T, 4) if anywhere; at most `most` parts.
+    """What `CellParts` has of triangles that are in the cells of their spans (T, 4) if anywhere; at most `most` parts.
 
     `grid`: x and z of its corner, and the side of a cell. A part within `_HAIR` of a cell counts.
     """

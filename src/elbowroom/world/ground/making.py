@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from elbowroom.geometry import quaternion
 from elbowroom.jit import exact_kernel, helper
-from elbowroom.world.ground.cells import Grid, Parts, cell_by_cell, grid_over, part_in, parts_of
+from elbowroom.world.ground.cells import CellGrid, CellParts, cell_by_cell, grid_over, part_in, parts_of
 from elbowroom.world.ground.gaps import spans_over
 from elbowroom.world.ground.ground import FIRM, PLAIN, RELIEF, SPANS, STEEPEST, STEP, Ground
 from elbowroom.world.ground.kept_ground import kept_ground
@@ -122,11 +122,11 @@ def _gridded(triangles: Floats, floor: FloorArea | None, step: float) -> Ground:
     return _spanned(ground, parts, gaps, grid) if len(gaps) else ground
 
 
-def _spanned(ground: Ground, firm: Parts, gaps: Floats, grid: Grid) -> Ground:
+def _spanned(ground: Ground, firm: CellParts, gaps: Floats, grid: CellGrid) -> Ground:
     """The same ground, of which the firm parts are given, with its gaps spanned by triangles (G, 10)."""
     gaps[:, SPANS] = 1.0
     spans = parts_of(gaps, grid, first=len(ground.triangles))
-    both = Parts(*(np.concatenate([one, other]) for one, other in zip(firm, spans, strict=True)))
+    both = CellParts(*(np.concatenate([one, other]) for one, other in zip(firm, spans, strict=True)))
     starts, members, bottoms, tops = cell_by_cell(both, grid)
     planes = np.concatenate([ground.triangles, gaps])
     return ground._replace(starts=starts, members=members, bottoms=bottoms, tops=tops, triangles=planes)
@@ -199,7 +199,7 @@ def _is_even(parts: Floats, k: int, side: float, step: float) -> bool:
     return bool(covered >= _WHOLE * side * side)
 
 
-def _floor_cells(floor: FloorArea, grid: Grid) -> Bools:
+def _floor_cells(floor: FloorArea, grid: CellGrid) -> Bools:
     """The cells (nx nz,) in which a place has its ground floor, or nearly."""
     along = np.arange(-_THRESHOLD, grid.cell + _THRESHOLD, floor.cell)
     x, z = (grid.corner[axis] + grid.cell * np.arange(grid.shape[axis])[:, None] + along for axis in (0, 1))

@@ -16,10 +16,10 @@ from elbowroom.world.ground.ground import Ground, firm_at, level_over
 from elbowroom.world.ground.sole import Sole
 
 Floats = NDArray[np.float64]
-Spot = tuple[float, float, float, float]  # x, z and yaw of a foot's ankle, and how its sole slopes, as `sole_on`
+SoleSpot = tuple[float, float, float, float]  # x, z and yaw of a foot's ankle, and how its sole slopes, as `sole_on`
 
-Lie = tuple[float, float]  # how far a sole is turned from its course, and how it slopes
-Course = tuple[float, float, float]  # the x and z where it begins, and where it leads, as a yaw
+SoleLie = tuple[float, float]  # how far a sole is turned from its course, and how it slopes
+SoleCourse = tuple[float, float, float]  # the x and z where it begins, and where it leads, as a yaw
 
 _NONE = -math.inf
 _ALONG, _ACROSS = 0.025, 0.07  # metres between places of the grid, at most; no farther across than half a sole
@@ -43,7 +43,7 @@ def _evenly(low: float, high: float, most: float) -> Floats:
 
 
 @helper
-def _look(ground: Ground, begin: Course, near: float, along: Floats, across: Floats, found: Floats) -> None:
+def _look(ground: Ground, begin: SoleCourse, near: float, along: Floats, across: Floats, found: Floats) -> None:
     """Set the ground `found` (R, C) at places so far `along` a course (R,) from a beginning, and `across` to its left.
 
     From the row of the beginning, where ground is about `near`, each column is followed step by step on, and back.
@@ -62,7 +62,7 @@ def _look(ground: Ground, begin: Course, near: float, along: Floats, across: Flo
 
 
 @helper
-def _highest(sole: Sole, gone: float, lie: Lie, along: Floats, across: Floats, found: Floats) -> float:
+def _highest(sole: Sole, gone: float, lie: SoleLie, along: Floats, across: Floats, found: Floats) -> float:
     """How high the ground `found` (R, C) holds a sole under its ankle that has gone so far, and how it lies there."""
     turned, grade = lie[0], math.tan(lie[1])
     sine, cosine, highest = math.sin(turned), math.cos(turned), _NONE
@@ -78,7 +78,7 @@ def _highest(sole: Sole, gone: float, lie: Lie, along: Floats, across: Floats, f
 
 @inner_exact_kernel
 def set_highest_under(
-    ground: Ground, sole: Sole, begin: Spot, end: Spot, near: float, shares: Floats, out: Floats
+    ground: Ground, sole: Sole, begin: SoleSpot, end: SoleSpot, near: float, shares: Floats, out: Floats
 ) -> None:
     """Set how high the ground holds a sole under its ankle, `out` (K,), at `shares` (K,) of its way.
 

@@ -8,7 +8,7 @@ convex, and have a file of their own.
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.world.obstacles.layout import DATA, EDGE, HALF, KIND, LINE, PER_METRE, ROUNDING, TURN, Kind, Nearby
+from elbowroom.world.obstacles.layout import DATA, EDGE, HALF, KIND, LINE, PER_METRE, ROUNDING, TURN, Nearby, ShapeKind
 from elbowroom.world.obstacles.meshes.closest_on_mesh import closest_on_mesh
 
 Floats = NDArray[np.float64]
@@ -29,13 +29,13 @@ def closest_points(segment: Floats, near: Nearby) -> tuple[Floats, Floats]:
     begins = np.einsum("bij,bj->bi", to_own, segment[:3] - centers)
     steps = to_own @ (segment[3:] - segment[:3])
     on_axes, on_shapes = begins.copy(), begins.copy()
-    for kind in Kind:
+    for kind in ShapeKind:
         of_kind = np.flatnonzero(rows[:, KIND] == kind)
-        if kind is Kind.MESH:
+        if kind is ShapeKind.MESH:
             for b in of_kind:
                 on_axes[b], on_shapes[b] = closest_on_mesh(begins[b], steps[b], near.packed, int(rows[b, DATA]))
             continue
-        groups = [of_kind] if kind is not Kind.HULL else [of_kind[i : i + 1] for i in range(len(of_kind))]
+        groups = [of_kind] if kind is not ShapeKind.HULL else [of_kind[i : i + 1] for i in range(len(of_kind))]
         for own in groups:
             if len(own):
                 on_axes[own], on_shapes[own] = _closest(begins[own], steps[own], rows[own], near)
@@ -60,13 +60,13 @@ def _closest(begins: Floats, steps: Floats, rows: Floats, near: Nearby) -> tuple
 def _inside(points: Floats, rows: Floats, near: Nearby) -> Floats:
     """The points of shapes (B,) of one kind that are nearest to points (B, S, 3), in the shapes' own axes."""
     half = rows[:, None, HALF:ROUNDING]
-    kind = Kind(int(rows[0, KIND]))
-    if kind is Kind.CYLINDER:
+    kind = ShapeKind(int(rows[0, KIND]))
+    if kind is ShapeKind.CYLINDER:
         away = np.hypot(points[..., 0], points[..., 2])
         shrunk = np.minimum(half[..., 0] / np.maximum(away, _TINY), 1.0)
         high = np.clip(points[..., 1], -half[..., 1], half[..., 1])
         return np.stack([points[..., 0] * shrunk, high, points[..., 2] * shrunk], axis=-1)
-    if kind is Kind.HULL:
+    if kind is ShapeKind.HULL:
         return _in_hull(points[0], near, int(rows[0, DATA]))[None]
     inner = np.clip(points, -half, half)
     off = points - inner

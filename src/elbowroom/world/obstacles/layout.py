@@ -28,7 +28,7 @@ TILE = 7 * LANES  # numbers of a tile: one capsule in sixteen configurations, ro
 PER_METRE = 32.0  # tiles' distances are in parts of a metre: a power of two, so changing units does not round
 
 
-class Kind(IntEnum):
+class ShapeKind(IntEnum):
     """Which kernel tells the distance from a shape."""
 
     BOX = 0

@@ -23,7 +23,7 @@ from elbowroom.world.obstacles.layout import Nearby
 from elbowroom.world.obstacles.lent_map import LentMap
 from elbowroom.world.obstacles.meshes.kept_parts import kept_parts
 from elbowroom.world.obstacles.meshes.packed import Packed, pack
-from elbowroom.world.obstacles.meshes.parts import Parts
+from elbowroom.world.obstacles.meshes.parts import ObstacleParts
 from elbowroom.world.obstacles.rows import about, bounds_of, corners_of, joined, one_of, rows_of
 from elbowroom.world.obstacles.shapes import Box, Hull, Mesh, Shape, extents_of
 from elbowroom.world.obstacles.tracks.along import Along, Place, along
@@ -91,7 +91,7 @@ class Obstacles:
         return rows_of(self._parts.shapes, self._parts.centers, self._parts.rotations, self._packed)
 
     @cached_property
-    def _parts(self) -> Parts:
+    def _parts(self) -> ObstacleParts:
         return kept_parts(self.shapes, self.centers, self.rotations, self.ground)
 
     @cached_property

@@ -12,14 +12,14 @@ from numpy.typing import NDArray
 
 from elbowroom.jit import inner_kernel
 from elbowroom.world.obstacles.extents import reach_along
-from elbowroom.world.obstacles.layout import KIND, LANES, PER_METRE, TILE, Kind, Nearby
+from elbowroom.world.obstacles.layout import KIND, LANES, PER_METRE, TILE, Nearby, ShapeKind
 
 Floats32 = NDArray[np.float32]
 
 _AXES = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 _LANES, _TILE = np.uint64(LANES), np.uint64(TILE)
 _METRES: Any = np.float32(1.0 / PER_METRE)
-_SOON = float(Kind.ROUNDED)  # up to this kind they are boxes, with sharp or rounded edges
+_SOON = float(ShapeKind.ROUNDED)  # up to this kind they are boxes, with sharp or rounded edges
 _SLACK: Any = np.float32(1e-3)  # metres by which a box is larger than it must be: more than any rounding
 
 

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.errors import InputError
-from elbowroom.world.obstacles.layout import Kind
+from elbowroom.world.obstacles.layout import ShapeKind
 
 Floats = NDArray[np.float64]
 Longs = NDArray[np.int64]
@@ -22,7 +22,7 @@ class Box:
 
     size: Vector  # full lengths along X, Y, Z
 
-    kind = Kind.BOX
+    kind = ShapeKind.BOX
     rounding = 0.0
     middle = _MIDDLE
 
@@ -38,7 +38,7 @@ class Sphere:
 
     radius: float
 
-    kind = Kind.ROUNDED
+    kind = ShapeKind.ROUNDED
     middle = _MIDDLE
 
     @property
@@ -59,7 +59,7 @@ class Capsule:
     radius: float
     length: float  # of the line, between the middles of the round ends
 
-    kind = Kind.ROUNDED
+    kind = ShapeKind.ROUNDED
     middle = _MIDDLE
 
     @property
@@ -80,7 +80,7 @@ class Cylinder:
     radius: float
     height: float
 
-    kind = Kind.CYLINDER
+    kind = ShapeKind.CYLINDER
     rounding = 0.0
     middle = _MIDDLE
 
@@ -96,7 +96,7 @@ class Hull:
 
     points: tuple[Vector, ...]
 
-    kind = Kind.HULL
+    kind = ShapeKind.HULL
     rounding = 0.0
 
     @cached_property
@@ -127,7 +127,7 @@ class Mesh:
     vertices: Floats  # (V, 3) corners
     faces: Longs  # (F, 3) of each triangle the numbers of its corners; counter-clockwise seen from outside if closed
 
-    kind = Kind.MESH
+    kind = ShapeKind.MESH
     rounding = 0.0
 
     def __post_init__(self) -> None:

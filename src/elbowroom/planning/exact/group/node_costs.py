@@ -44,7 +44,7 @@ _NOTHING = np.float32(0.0)
 _ONE, _FIRST = plain(1), plain(0)  # posture; place
 
 
-class Looks(NamedTuple):
+class NodeLooks(NamedTuple):
     """What the nodes along one path are looked at with."""
 
     scratch: Scratch
@@ -70,7 +70,7 @@ class NodeCosts(NamedTuple):
 
 
 @helper
-def begun_costs(looks: Looks, task: GroupTask, weights: Weights) -> tuple[NodeCosts, float, int]:
+def begun_costs(looks: NodeLooks, task: GroupTask, weights: Weights) -> tuple[NodeCosts, float, int]:
     """What is known of the nodes before any is looked at.
 
     Also the greatest clearance that may be asked for, half of what the start has, and the capsules checked.
@@ -138,7 +138,9 @@ def _price(cost: Floats32, away: Floats32, added: Floats32, clear: Floats32, mar
 
 
 @inner_exact_kernel
-def look_along(looks: Looks, nodes: NodeCosts, path: Longs, whole: Bools, weights: Weights) -> tuple[int, bool, int]:
+def look_along(
+    looks: NodeLooks, nodes: NodeCosts, path: Longs, whole: Bools, weights: Weights
+) -> tuple[int, bool, int]:
     """Look at the nodes of a path (n+1,), if it is not empty, and at all nodes of intervals that are `whole` (n,).
 
     Returns the first key time at which a node may cost more than was known, the number of key times if none does;
@@ -156,7 +158,7 @@ def look_along(looks: Looks, nodes: NodeCosts, path: Longs, whole: Bools, weight
 
 
 @helper
-def _looked_at(looks: Looks, nodes: NodeCosts, path: Longs, whole: Bools) -> tuple[Bools, int]:
+def _looked_at(looks: NodeLooks, nodes: NodeCosts, path: Longs, whole: Bools) -> tuple[Bools, int]:
     """Look at nodes as `look_along` does; at which key times (n+1,) there were any, and the capsules checked."""
     scratch, postures, known, carriers, obstacles, goals, extras = looks
     changed, checks, width = np.zeros(goals.shape[0], np.bool_), 0, postures.columns.shape[1]
@@ -198,7 +200,7 @@ def _new_blocks(path: Longs, k: int, whole: bool, blocks: Bools, out: Longs) -> 
 
 
 @helper
-def _held(looks: Looks, t: int, posture: Floats) -> tuple[Any, int]:
+def _held(looks: NodeLooks, t: int, posture: Floats) -> tuple[Any, int]:
     """The clearance of an extra node's posture (d,) about its key time, metres, and the capsules checked."""
     places, turns = looks.carriers.places, looks.carriers.turns
     least, checks = _INFINITE, 0

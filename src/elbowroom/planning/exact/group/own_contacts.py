@@ -15,7 +15,7 @@ Floats32 = NDArray[np.float32]
 _SAME = 1e-6  # radians
 
 
-class Contact(NamedTuple):
+class OwnContact(NamedTuple):
     """A group ran into the body."""
 
     group: DofGroup

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from elbowroom.jit import exact_kernel, helper, plain
 from elbowroom.planning.exact.group.caches import GroupCache
 from elbowroom.planning.exact.group.carriers import Carriers, carrier_in, carriers_of
-from elbowroom.planning.exact.group.node_costs import Looks, NodeCosts, begun_costs, look_along
+from elbowroom.planning.exact.group.node_costs import NodeCosts, NodeLooks, begun_costs, look_along
 from elbowroom.planning.exact.group.problem import GroupPath, GroupTask, Weights
 from elbowroom.planning.exact.lattice.closed_edges import ClosedEdges, reopen_first, with_tables
 from elbowroom.planning.exact.lattice.dynamic_programming import cheapest_path, settle_backward, widen
@@ -183,7 +183,7 @@ def _close_promising(
 @helper
 def _begun(
     scratch: Scratch, cache: GroupCache, task: GroupTask, weights: Weights, edges: ClosedEdges
-) -> tuple[_Question, Lattice, Looks, NodeCosts, float, int]:
+) -> tuple[_Question, Lattice, NodeLooks, NodeCosts, float, int]:
     """The lattice of a task, no node looked at, and what the search works on.
 
     Also the greatest clearance that may be asked for, and the capsules checked.
@@ -195,7 +195,7 @@ def _begun(
     extras = extra_nodes(
         postures.configurations, postures.columns, postures.step, goals, task.previous, task.start, task.settled
     )
-    looks = Looks(scratch, postures, known, carriers, obstacles, goals, extras)
+    looks = NodeLooks(scratch, postures, known, carriers, obstacles, goals, extras)
     nodes, most, checks = begun_costs(looks, task, weights)
     lattice = Lattice(
         postures,
@@ -214,7 +214,7 @@ def _begun(
 
 @helper
 def _cheapest(
-    lattice: Lattice, work: Work, looks: Looks, nodes: NodeCosts, weights: Weights, first: int, narrow: bool
+    lattice: Lattice, work: Work, looks: NodeLooks, nodes: NodeCosts, weights: Weights, first: int, narrow: bool
 ) -> tuple[int, Longs, int, int, int]:
     """The greatest depth that is reached, and the nodes of the cheapest path to there, all of which were looked at.
 
@@ -235,7 +235,7 @@ def _cheapest(
 
 @helper
 def _settled(
-    lattice: Lattice, work: Work, looks: Looks, nodes: NodeCosts, weights: Weights, whole: Bools, stale: int
+    lattice: Lattice, work: Work, looks: NodeLooks, nodes: NodeCosts, weights: Weights, whole: Bools, stale: int
 ) -> tuple[int, int]:
     """Look at all nodes of some intervals (n,); settle what is not: from `stale` on, or left out by a narrow search.
 

@@ -29,13 +29,13 @@ class Problem(NamedTuple):
     apart: Bools  # (n+1, L, R) whether the arms keep clear of each other
 
 
-class Bounds(NamedTuple):
+class CostBounds(NamedTuple):
     """Lower bounds on the cost of whole paths, for waist, left and right arm: infinite where there is no such path."""
 
     through: tuple[Floats32, Floats32, Floats32]  # (n+1, V) of a path from start to end through the posture
 
 
-def bounds_of(problem: Problem) -> Bounds:
+def bounds_of(problem: Problem) -> CostBounds:
     """Each group by itself, the others at their best.
 
     What an arm costs under a waist at least is charged to the waist, and the arms pay what they cost beyond: the sum
@@ -53,7 +53,7 @@ def bounds_of(problem: Problem) -> Bounds:
     whole = [one[0].min() for one in alone]
     others = [np.float32(sum(whole[:g] + whole[g + 1 :])) for g in range(3)]
     through = [one + other for one, other in zip(alone, others, strict=True)]
-    return Bounds((through[0], through[1], through[2]))
+    return CostBounds((through[0], through[1], through[2]))
 
 
 def path_costs(costs: Floats32, edges: Floats32) -> Floats32:

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.planning.exact.group.problem import Group, GroupPath, GroupTask, Guide, extras_of
-from elbowroom.planning.exact.joint.step import GroupNodes, Surroundings
+from elbowroom.planning.exact.joint.step import GroupNodes, PathSurroundings
 from elbowroom.planning.exact.lattice.lattice import EXTRA, HOLD, PREVIOUS
 from elbowroom.planning.exact.lattice.postures import BLOCK
 from elbowroom.planning.exact.sweep.motion_bounds import SWEEP, RootSweeps
@@ -61,7 +61,7 @@ def _only_start(base: Floats32) -> None:
     base[0, base.shape[1] - EXTRA + HOLD] = 0.0
 
 
-def surroundings(states: Floats, sweeps: RootSweeps, roots: Indices, obstacles: Spans) -> Surroundings:
+def surroundings(states: Floats, sweeps: RootSweeps, roots: Indices, obstacles: Spans) -> PathSurroundings:
     """The pelvis at the moments around each key time at which a posture has to be free.
 
     `roots` (n,) are the entries of `sweeps` through which the root goes.
@@ -74,7 +74,7 @@ def surroundings(states: Floats, sweeps: RootSweeps, roots: Indices, obstacles: 
         for i in range(moments):
             interval, sample = samples[min(i, len(samples) - 1)]
             places[t, i], turns[t, i] = sweeps.places[roots[interval], sample], sweeps.turns[roots[interval], sample]
-    return Surroundings(states, places, turns, obstacles)
+    return PathSurroundings(states, places, turns, obstacles)
 
 
 def guide(nodes: GroupNodes, chosen: Indices) -> Guide:

@@ -73,7 +73,7 @@ class GroupNodes(NamedTuple):
     margins: Floats  # (n+1,) metres of clearance that a node needs
 
 
-class Surroundings(NamedTuple):
+class PathSurroundings(NamedTuple):
     """Where the avatar goes."""
 
     states: Floats  # (n+1, 7) the root at the key times
@@ -100,7 +100,7 @@ class JointStep:
         self,
         body: OwnBody,
         nodes: tuple[GroupNodes, ...],
-        around: Surroundings,
+        around: PathSurroundings,
         settings: JointSettings,
     ) -> None:
         """The `nodes` of all groups in the order of search."""
@@ -236,7 +236,7 @@ class JointStep:
         return np.concatenate([_padded(nodes.postures), nodes.extras[depth]])
 
     def chests(self, depth: int, waists: Floats) -> tuple[Floats, Floats]:
-        """`Surroundings.chests` of this body."""
+        """`PathSurroundings.chests` of this body."""
         return self.around.chests(self._body.model, depth, waists)
 
     def lanes(self, group: int, depth: int) -> Lanes:

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from elbowroom.body.dof import CHILDREN, LOCAL, SEARCH_ORDER, DofGroup, columns_of, followers_of, side_by_side
 from elbowroom.planning.exact.group.caches import PlanCaches
-from elbowroom.planning.exact.group.own_contacts import Contact, rule_out_near
+from elbowroom.planning.exact.group.own_contacts import OwnContact, rule_out_near
 from elbowroom.planning.exact.group.path_problem import PathProblem
 from elbowroom.planning.exact.group.problem import GroupPath, GroupTask, Guide, extras_of
 from elbowroom.planning.exact.lattice.closed_edges import ClosedEdges
@@ -50,7 +50,7 @@ class ChildSearch:
         self._caches, self._rounds = caches, rounds
         self._given = problem
         self._problem = problem  # with the goals under the waist's path
-        self._contacts: list[Contact] = []  # of all motions along this path
+        self._contacts: list[OwnContact] = []  # of all motions along this path
 
     def followers(self, waist: GroupPath, guides: Mapping[DofGroup, Guide], evidence_log: EvidenceLog) -> GroupPaths:
         """The paths of those children that could follow the waist; they come first, and depend on no other child."""
@@ -159,7 +159,7 @@ class ChildSearch:
         around = self._around(paths[:number])
         for t in range(max(interval, 1), interval + 2):
             posture = paths[number].keys[t].copy()
-            self._contacts.append(Contact(SEARCH_ORDER[number], t, around[t], posture, near))
+            self._contacts.append(OwnContact(SEARCH_ORDER[number], t, around[t], posture, near))
 
     def _self_contacts(self, found: GroupPaths) -> list[tuple[int, int]]:
         """The groups, by their number, and the intervals in which their motion runs into the body, in order."""

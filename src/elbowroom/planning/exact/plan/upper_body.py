@@ -18,14 +18,14 @@ from elbowroom.planning.exact.group.upper_body_model import UpperBodyModel, uppe
 from elbowroom.planning.exact.memory.previous_plan import PreviousPlan, RequiredMargins, StartState, required_margins
 from elbowroom.planning.exact.plan.plan_memory import PlanMemory
 from elbowroom.planning.exact.plan.upper_body_search import Effort, UpperBodySearch, UpperPlan
-from elbowroom.planning.exact.refine.blocked import Known, children_for, waists_for
+from elbowroom.planning.exact.refine.blocked_slice import Known, children_for, waists_for
 from elbowroom.planning.exact.refine.sampling import RefinementSettings
 from elbowroom.planning.exact.settings import ExactSettings
 from elbowroom.planning.exact.sweep.motion_bounds import root_sweeps
 from elbowroom.planning.model.footing import Footing
 from elbowroom.planning.model.lowered_legs import LoweredLegs
 from elbowroom.planning.motion import GoOn, keep_going
-from elbowroom.planning.narrow.figure import figure_of
+from elbowroom.planning.narrow.build import build_of
 from elbowroom.planning.narrow.goals import goals_where_narrow
 from elbowroom.planning.narrow.places import NarrowPlaces
 from elbowroom.planning.on_stairs import goals_on_stairs
@@ -58,7 +58,7 @@ class UpperBodyPlanner:
         self._gait = body.gait
         self._legs = LoweredLegs(body, scene.obstacles, scene.ground)
         self._underfoot = Footing(body, scene.ground).underfoot
-        self._narrow = NarrowPlaces(figure_of(humanoid, body), scene.free_map)
+        self._narrow = NarrowPlaces(build_of(humanoid, body), scene.free_map)
         self.reset()
 
     @property

@@ -23,13 +23,13 @@ from elbowroom.planning.exact.group.path_problem import PathProblem, no_costs
 from elbowroom.planning.exact.group.problem import GroupPath, GroupTask, Guide, Weights, extras_of
 from elbowroom.planning.exact.group.upper_body_model import UpperBodyModel
 from elbowroom.planning.exact.joint.guide import child_nodes, guide, surroundings, waist_nodes
-from elbowroom.planning.exact.joint.step import PRODUCT, JointSettings, JointStep, Surroundings
+from elbowroom.planning.exact.joint.step import PRODUCT, JointSettings, JointStep, PathSurroundings
 from elbowroom.planning.exact.lattice.lattice import EXTRA, PREVIOUS
 from elbowroom.planning.exact.memory.previous_plan import RequiredMargins, jolts
 from elbowroom.planning.exact.plan.children import ChildSearch, GroupPaths
 from elbowroom.planning.exact.plan.evidence import EvidenceLog
 from elbowroom.planning.exact.plan.unhindered import unhindered
-from elbowroom.planning.exact.refine.blocked import Blocked
+from elbowroom.planning.exact.refine.blocked_slice import BlockedSlice
 from elbowroom.planning.exact.sweep.crouch import ROUNDS, Crouch, node_lowerings, too_deep
 from elbowroom.planning.exact.sweep.node_clearances import HELD_AT_START, held_clearance
 from elbowroom.planning.model.lowered_legs import LoweredLegs
@@ -315,7 +315,7 @@ class UpperBodySearch:
         """Why there is no way."""
         return blockade(self.joint_step(), self.path, self.blocked[1], self.problem.near.numbers)
 
-    def blocked_slice(self) -> Blocked:
+    def blocked_slice(self) -> BlockedSlice:
         """The slice that the first group to fail could not get through."""
         number, depth = self.blocked
         waist = self._waist
@@ -327,7 +327,7 @@ class UpperBodySearch:
         if depth < len(waist.path.keys):
             waists = np.concatenate([waist.path.keys[depth : depth + 1], waists])
         margin = float(self.problem.anew.margins[number, depth])
-        return Blocked(depth, self._surroundings(), self.goals[depth, at], margin, waists)
+        return BlockedSlice(depth, self._surroundings(), self.goals[depth, at], margin, waists)
 
     def waist_at(self, depth: int) -> Floats:
         """The waist (d,) that was chosen for itself at a key time that it reached."""
@@ -359,7 +359,7 @@ class UpperBodySearch:
             JointSettings(self.weights.step, self.weights.near, self.weights.comfort),
         )
 
-    def _surroundings(self) -> Surroundings:
+    def _surroundings(self) -> PathSurroundings:
         problem = self.problem
         return surroundings(self.path.states, self.caches.roots, problem.roots, problem.near.moments)
 

@@ -37,7 +37,7 @@ _SPEED, _SLOW = 1.1, 0.4  # m/s
 _REMEMBERED = 96  # surroundings of a group, more than a path has key times
 
 
-class Parts(NamedTuple):
+class PartsBeside(NamedTuple):
     """Capsules that a group must keep away from, in the chest frame, and by how much."""
 
     axes: Floats32  # (N, P, 6)
@@ -56,10 +56,10 @@ class OwnBody:
         """All capsules (N, all, 6) in the chest frame, for N upper bodies (N, LOCAL) and root states (N, 7)."""
         return np.ascontiguousarray(seen_from_chest(self.model, uppers, states).transpose(2, 0, 1))
 
-    def parts(self, group: DofGroup, others: tuple[DofGroup, ...], body: Floats32) -> Parts:
+    def parts(self, group: DofGroup, others: tuple[DofGroup, ...], body: Floats32) -> PartsBeside:
         """What a group must keep away from of `others`, where these are as in a `body` that was `seen` (N, all, 6)."""
         capsules, allowed = self.pairs.beside(group, others)
-        return Parts(np.ascontiguousarray(body[:, capsules]), np.ascontiguousarray(allowed))
+        return PartsBeside(np.ascontiguousarray(body[:, capsules]), np.ascontiguousarray(allowed))
 
     def resting(self, group: DofGroup, postures: Postures) -> Bools:
         """Which postures (W,) touch the body at some phase of the natural walk, all other groups being natural."""

@@ -55,7 +55,7 @@ class OwnParts(NamedTuple):
     levers: Floats  # (P, M) as `BodyLevers.between` has them
 
 
-class Shown(NamedTuple):
+class KeyedMotion(NamedTuple):
     """A motion as it is shown."""
 
     states: Floats  # (n+1, 7) of the root, and
@@ -125,13 +125,15 @@ class OwnMotion:
 
     def proven(self, path: RootPath, keys: Floats, rates: Floats, walk: Floats) -> tuple[Floats, Indices]:
         """The proven gaps (n,), metres, and whose (n,) they are: infinite and -1 where it does as in the walk."""
-        shown = Shown(path.states, keys, rates, path.interval)
+        shown = KeyedMotion(path.states, keys, rates, path.interval)
         gaps, groups = _proven(self._parts, self._underfoot, self._seen, shown, walk)
         return gaps, groups
 
 
 @exact_kernel
-def _proven(parts: OwnParts, underfoot: Underfoot, seen: Seen, shown: Shown, walk: Floats) -> tuple[Floats, Indices]:
+def _proven(
+    parts: OwnParts, underfoot: Underfoot, seen: Seen, shown: KeyedMotion, walk: Floats
+) -> tuple[Floats, Indices]:
     """See `OwnMotion.proven`."""
     gaps, groups = np.full(shown.keys.shape[0] - 1, np.inf), np.full(shown.keys.shape[0] - 1, -1)
     chosen = _beside(shown.keys, walk)
@@ -157,7 +159,7 @@ def _proven(parts: OwnParts, underfoot: Underfoot, seen: Seen, shown: Shown, wal
 
 
 @helper
-def _names(shown: Shown, plain_ground: bool) -> Indices:
+def _names(shown: KeyedMotion, plain_ground: bool) -> Indices:
     """What the key times are known by, one after the other, ((n+1) _WIDTH,)."""
     names = np.zeros(shown.keys.shape[0] * _WIDTH, np.int64)
     contents = names.reshape(shown.keys.shape[0], _WIDTH)
@@ -183,7 +185,7 @@ def _beside(keys: Floats, walk: Floats) -> Indices:
 
 
 @helper
-def _prove(parts: OwnParts, feet: _Feet, shown: Shown, chosen: Indices, least: Floats, groups: Indices) -> None:
+def _prove(parts: OwnParts, feet: _Feet, shown: KeyedMotion, chosen: Indices, least: Floats, groups: Indices) -> None:
     """Set the proven gaps `least` (n,) in chosen intervals (K,), and whose they are."""
     count, looks = chosen.shape[0], _PARTS + 1
     intervals, moments = np.empty(count * looks, np.int64), np.empty(count * looks)
@@ -214,7 +216,7 @@ def _prove(parts: OwnParts, feet: _Feet, shown: Shown, chosen: Indices, least: F
 
 
 @helper
-def _set_moves(shown: Shown, k: int, out: Floats) -> None:
+def _set_moves(shown: KeyedMotion, k: int, out: Floats) -> None:
     """What every component of the body moves at most in the parts of an interval: `out` (_PARTS, M)."""
     states, keys, rates, interval = shown
     for g in range(_COLUMNS.shape[0]):
@@ -268,7 +270,7 @@ def _moved(before: Floats32, after: Floats32, shift: Floats) -> float:
 
 
 @inner_exact_kernel
-def _roots_at(parts: OwnParts, feet: _Feet, shown: Shown, intervals: Indices, shares: Floats) -> Floats:
+def _roots_at(parts: OwnParts, feet: _Feet, shown: KeyedMotion, intervals: Indices, shares: Floats) -> Floats:
     """The root states (N, ROOT_STATE) at shares (N,) of `intervals` (N,), on what the feet stand on, at the origin."""
     roots = np.zeros((shares.shape[0], ROOT_STATE))
     for n in range(roots.shape[0]):
@@ -283,7 +285,7 @@ def _roots_at(parts: OwnParts, feet: _Feet, shown: Shown, intervals: Indices, sh
 
 
 @inner_exact_kernel
-def _postures(shown: Shown, intervals: Indices, shares: Floats) -> Floats:
+def _postures(shown: KeyedMotion, intervals: Indices, shares: Floats) -> Floats:
     """The postures (N, DOF) at shares (N,) of `intervals` (N,), of a root at the origin."""
     keys, rates, interval = shown.keys, shown.rates, shown.interval
     count, first = shares.shape[0], DOF - keys.shape[1]

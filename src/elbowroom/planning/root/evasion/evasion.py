@@ -19,9 +19,9 @@ from numpy.typing import NDArray
 
 from elbowroom.body.humanoid import Humanoid
 from elbowroom.body.root import RootState
-from elbowroom.planning.root.evasion.grid_search import Prices, cheapest, pulled_taut
+from elbowroom.planning.root.evasion.grid_search import GridPrices, cheapest, pulled_taut
 from elbowroom.planning.root.evasion.profile import Profile
-from elbowroom.planning.root.evasion.room import Floor, Grid, Room, places_on
+from elbowroom.planning.root.evasion.room import GridFloor, LineGrid, Room, places_on
 from elbowroom.planning.root.evasion.turned_body import TurnedBody
 from elbowroom.planning.root.line.line import TravelLine
 from elbowroom.planning.stillness import STILL
@@ -123,7 +123,9 @@ class EvasionFinder:
         first, rows = ahead if len(moving) else s.step * round(ahead / s.step), math.ceil(sight / s.step) + 1
         passing = self._passing(moving, time, s.step * np.arange(float(rows)), start, speeds[0])
         turned = self._body.going(line.heading - line.facing, speeds)
-        grid = Grid(first, s.step, s.aside, rows, s.columns, s.comfort, s.margin, s.margin + s.swerving + max(s.cares))
+        grid = LineGrid(
+            first, s.step, s.aside, rows, s.columns, s.comfort, s.margin, s.margin + s.swerving + max(s.cares)
+        )
         floor = self._floor(line, grid, start.height)
         if floor is None:
             return None
@@ -133,16 +135,16 @@ class EvasionFinder:
         room = Room(self._body, turned, line, grid, (window, floor), near, passing)
         return EvasionGrid(s, line, start, turned.slowness, grid, room, len(moving) > 0)
 
-    def _floor(self, line: TravelLine, grid: Grid, height: float) -> Floor | None:
+    def _floor(self, line: TravelLine, grid: LineGrid, height: float) -> GridFloor | None:
         """What one walks on over a grid, who comes from a height; None where that is not level."""
         ground = self._scene.ground
         if ground.plain:
-            return Floor(np.zeros((grid.rows, grid.columns)), -np.inf)
+            return GridFloor(np.zeros((grid.rows, grid.columns)), -np.inf)
         heights = heights_beside(ground, height, 0, places_on(line, grid))
         there = np.where(np.isfinite(heights), heights, height)
         if np.ptp(there) > _LEVEL:
             return None
-        return Floor(there, ground.step)
+        return GridFloor(there, ground.step)
 
     def _passing(self, moving: Moving, time: float, ahead: Floats, start: RootState, speed: float) -> Spans:
         """What moves about when places `ahead` (n,) metres are reached, a little larger, unless all of it stands."""
@@ -151,7 +153,7 @@ class EvasionFinder:
         return grown_aside(swept, s.polite if moving.fastest > STILL else 0.0)
 
 
-def _corners(line: TravelLine, grid: Grid, reach: float) -> tuple[Floats, Floats]:
+def _corners(line: TravelLine, grid: LineGrid, reach: float) -> tuple[Floats, Floats]:
     """The corners (2,) on the ground, x and z, of what holds a grid and `reach` metres around it."""
     wide = grid.aside * (grid.columns // 2)
     ends = (line.point(grid.first + i * grid.step * (grid.rows - 1), j * wide) for i in (0, 1) for j in (-1, 1))
@@ -175,7 +177,7 @@ class EvasionGrid(NamedTuple):
     line: TravelLine
     start: RootState
     slowness: Floats  # (T,) seconds for each metre, in each turn
-    grid: Grid
+    grid: LineGrid
     room: Room
     passing: bool  # whether something moves
 
@@ -193,7 +195,7 @@ class EvasionGrid(NamedTuple):
         standing = s.step * (self.slowness - self.slowness.min() + s.turned * s.angles**2)
         ends = s.ends[0] * s.aside**2, s.ends[1] * (s.most / s.turns) ** 2
         leftward = s.step * s.aside * s.leftward if self.passing else 0.0
-        prices = Prices(
+        prices = GridPrices(
             s.margin + care, s.swerving, s.comfort, s.step * s.beside * s.aside**2, leftward, s.shifting, s.turning,
             s.spot, (s.step * s.legs, s.step * bodies[0], s.step * bodies[1]), s.keeping, ends,
         )  # fmt: skip

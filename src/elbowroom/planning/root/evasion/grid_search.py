@@ -18,7 +18,7 @@ _SWEEPS = 12  # of evening out
 _LEAVING = 3  # rows near the start that need no more room than the start has
 
 
-class Prices(NamedTuple):
+class GridPrices(NamedTuple):
     """What the search needs of the settings, in grid units."""
 
     margin: float
@@ -57,7 +57,7 @@ def pulled_taut(clear: Floats32, shift: Floats32, path: Indices, begin: float, a
 
 @exact_kernel
 def cheapest(
-    clear: Floats32, standing: Floats, prices: Prices, begin: Indices, favoured: Indices
+    clear: Floats32, standing: Floats, prices: GridPrices, begin: Indices, favoured: Indices
 ) -> tuple[Indices, float]:
     """Columns and turns (m, 2) of the cheapest path from the cell `begin` to the farthest row that can be reached.
 
@@ -87,7 +87,7 @@ def cheapest(
 
 
 @helper
-def _turn_on_the_spot(clear: Floats32, prices: Prices, begin: int, cost: Floats) -> None:
+def _turn_on_the_spot(clear: Floats32, prices: GridPrices, begin: int, cost: Floats) -> None:
     """What it costs (turns,) to begin in another turn than `begin`, where there is room for it."""
     cost[begin] = 0.0
     for side in (-1, 1):
@@ -101,7 +101,7 @@ def _turn_on_the_spot(clear: Floats32, prices: Prices, begin: int, cost: Floats)
 def _settle(
     clear: Floats32,
     standing: Floats,
-    prices: Prices,
+    prices: GridPrices,
     here: float,
     favoured: Indices,
     i: int,
@@ -129,7 +129,7 @@ def _settle(
 
 
 @helper
-def _best_move(clear: Floats32, prices: Prices, i: int, j: int, t: int, cost: Floats) -> tuple[float, int]:
+def _best_move(clear: Floats32, prices: GridPrices, i: int, j: int, t: int, cost: Floats) -> tuple[float, int]:
     """The cheapest path to a cell from the row before it, and by which of nine moves."""
     best, move = np.inf, 0
     for m in range(9):

@@ -29,7 +29,7 @@ class Profile(NamedTuple):
     rows: Floats  # (n, 2) metres to the left of the line; radians that the body is turned from the line's facing
 
 
-class Course(NamedTuple):
+class PacedLine(NamedTuple):
     """The line that a profile belongs to, and the pace on it, for kernels."""
 
     x: float
@@ -60,18 +60,18 @@ def _at(rows: Floats, place: float, column: int) -> float:
 
 
 @helper
-def _allowed(rows: Floats, step: float, place: float, course: Course) -> float:
+def _allowed(rows: Floats, step: float, place: float, paced: PacedLine) -> float:
     """The speed here from which one can still slow down for every turn of the body that comes."""
     speed = np.inf
     for i in range(max(int(place), 0), rows.shape[0]):
         distance = max(i - place, 0.0) * step
         if distance > _SEEN:
             break
-        own = turned_speed(course.forward, course.sideways, course.heading - course.facing - rows[i, 1])
+        own = turned_speed(paced.forward, paced.sideways, paced.heading - paced.facing - rows[i, 1])
         swing = abs(rows[min(i + 1, rows.shape[0] - 1), 1] - rows[i, 1])
         own = min(own, _COMFORT * step / max(swing, _STILL))
         speed = min(speed, np.sqrt(own * own + 2.0 * _EASY * distance))
-    if course.stops:
+    if paced.stops:
         left = max(rows.shape[0] - 1 - place, 0.0) * step
         return float(min(speed, np.sqrt(_EASY * left)))
     return float(max(speed, _LEAST))
@@ -79,26 +79,26 @@ def _allowed(rows: Floats, step: float, place: float, course: Course) -> float:
 
 @exact_kernel
 def follow_profile(
-    states: Floats, rows: Floats, first: float, step: float, course: Course, interval: float, bounds: MotionBounds
+    states: Floats, rows: Floats, first: float, step: float, paced: PacedLine, interval: float, bounds: MotionBounds
 ) -> None:
     """Fill the states by walking along a profile; beyond its end the line itself is walked, facing ahead."""
-    sine, cosine = np.sin(course.heading), np.cos(course.heading)
+    sine, cosine = np.sin(paced.heading), np.cos(paced.heading)
     for k in range(states.shape[0] - 1):
-        dx, dz = states[k, 0] - course.x, states[k, 1] - course.z
+        dx, dz = states[k, 0] - paced.x, states[k, 1] - paced.z
         ahead, left = dx * sine + dz * cosine, dx * cosine - dz * sine
         place = (ahead - first) / step
-        facing = course.facing + _at(rows, place, _TURN)
+        facing = paced.facing + _at(rows, place, _TURN)
         awry = abs(wrapped(states[k, 2] - facing))
-        speed = min(_allowed(rows, step, place, course), course.forward)
+        speed = min(_allowed(rows, step, place, paced), paced.forward)
         speed *= min(max((_WRY - awry) / (_WRY - _AWRY), 0.0), 1.0)
-        along, across = _along(states[k], course.heading)
+        along, across = _along(states[k], paced.heading)
         gone = place + 0.5 * interval * (along + speed) / step
         slope = (_at(rows, gone + 0.5, _ASIDE) - _at(rows, gone - 0.5, _ASIDE)) / step
         swing = (_at(rows, gone + 0.5, _TURN) - _at(rows, gone - 0.5, _TURN)) / step * speed
         aside = speed * slope
         aside += _EAGER / interval * (_at(rows, gone, _ASIDE) - left - 0.5 * interval * (across + aside))
-        aside = min(max(aside, -course.sideways), course.sideways)
-        turned = wrapped(states[k, 2] - course.facing)
+        aside = min(max(aside, -paced.sideways), paced.sideways)
+        turned = wrapped(states[k, 2] - paced.facing)
         turn = swing + _EAGER / interval * (_at(rows, gone, _TURN) - turned - 0.5 * interval * (states[k, 5] + swing))
         turn = min(max(turn, -bounds.turn_rate), bounds.turn_rate)
         vx, vz = speed * sine + aside * cosine, speed * cosine - aside * sine

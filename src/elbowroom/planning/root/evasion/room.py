@@ -31,7 +31,7 @@ _DOUBT = 0.005  # metres by which the map may say too little
 _MOST = 240  # cells of a grid that are checked: beyond them the map is believed
 
 
-class Grid(NamedTuple):
+class LineGrid(NamedTuple):
     """Places along a line. Metres."""
 
     first: float  # place of the first row on the line
@@ -44,14 +44,14 @@ class Grid(NamedTuple):
     ample: float  # clearance of legs that is enough for everything: cells that may be free are taken to have it
 
 
-class Floor(NamedTuple):
+class GridFloor(NamedTuple):
     """What feet stand on over a grid. Metres."""
 
     heights: Floats  # (rows, columns)
     step: float  # what rises no higher above it is stepped onto; minus infinity on the plane
 
 
-def places_on(line: TravelLine, grid: Grid) -> Floats:
+def places_on(line: TravelLine, grid: LineGrid) -> Floats:
     """The places (rows, columns, 2), x and z, of a grid along a line."""
     left: Floats = grid.aside * (np.arange(float(grid.columns)) - grid.columns // 2)
     ahead: Floats = grid.first + grid.step * np.arange(float(grid.rows))[:, None]
@@ -66,8 +66,8 @@ class Room:
         body: TurnedBody,
         turned: Turned,
         line: TravelLine,
-        grid: Grid,
-        where: tuple[Window, Floor],
+        grid: LineGrid,
+        where: tuple[Window, GridFloor],
         near: Nearby,
         passing: Spans,
     ) -> None:
@@ -103,9 +103,9 @@ class _Cells(NamedTuple):
     shift: Floats32
     known: Bools  # (rows, columns, T) cells that were checked
     places: Floats  # (rows, columns, 2) of their middles
-    floor: Floor
+    floor: GridFloor
     left: tuple[float, float]  # a metre to the left of the line, x and z
-    grid: Grid
+    grid: LineGrid
     capsules: Floats32  # (T, C, 6) facing along the line
     groups: Indices  # (4,) where legs, trunk and arms begin among them; the end
     radii: Floats32  # (C,)
@@ -250,13 +250,13 @@ def free_distance(distances: Floats32, level: int, a: float, b: float) -> float:
 
 
 @helper
-def _open_from(grid: Grid) -> float:
+def _open_from(grid: LineGrid) -> float:
     """The clearance of legs in the middle of a cell from which on there may be a place in it where they are free."""
     return grid.margin - 0.5 * grid.aside - _DOUBT
 
 
 @exact_kernel
-def _read(clear: Floats32, window: Window, shape: _Shape, places: Floats, grid: Grid) -> None:
+def _read(clear: Floats32, window: Window, shape: _Shape, places: Floats, grid: LineGrid) -> None:
     """Fill `clear` (3, rows, columns, T) with what the map says at `places` (rows, columns, 2)."""
     distances, discs, comfort, open_from = window.distances, shape.discs, grid.comfort, _open_from(grid)
     roots, starts, all_levels, radii = np.empty(distances.shape[0]), discs.starts, discs.levels, discs.radii
@@ -285,7 +285,7 @@ def _read(clear: Floats32, window: Window, shape: _Shape, places: Floats, grid: 
 
 @exact_kernel
 def _pass(
-    clear: Floats32, shape: _Shape, places: Floats, over: tuple[Spans, Floats], heights: Floats, grid: Grid
+    clear: Floats32, shape: _Shape, places: Floats, over: tuple[Spans, Floats], heights: Floats, grid: LineGrid
 ) -> None:
     """Lower `clear` to what upright boxes that pass leave, a span for each row, `over` floors (rows, columns)."""
     passing, floors = over

@@ -31,7 +31,7 @@ _ENDLESS: Any = np.float32(np.inf)
 
 
 @by_reference
-class Looks(NamedTuple):
+class PathLooks(NamedTuple):
     """How the paths of one body are looked at."""
 
     legs: Legs
@@ -43,7 +43,7 @@ class Looks(NamedTuple):
 
 @exact_kernel
 def free_part(
-    how: Looks, among: Neighbours, states: Floats, interval: float, skin: float, known: Floats32
+    how: PathLooks, among: Neighbours, states: Floats, interval: float, skin: float, known: Floats32
 ) -> tuple[int, int]:
     """The number of leading key intervals of a path (n+1, 7) with `skin` metres of room, as the stop from each end has.
 
@@ -52,7 +52,7 @@ def free_part(
     """
     bounds, free, posed = how.bounds, states.shape[0] - 1, 0
     moving, stopping = to_check(
-        states, interval, bounds.braking, bounds.turn_acceleration, how.skin, how.hull, among.ground
+        states, interval, bounds.braking, bounds.turn_acceleration, how.skin, how.hull, among.boxes
     )
     step = how.spacing * _fastest(states, how.legs.reach)
     for kind, asked in enumerate((moving, stopping)):
@@ -83,7 +83,7 @@ def _together(asked: Bools, known: Floats32, first: int, end: int) -> int:
 
 
 @helper
-def _shown(how: Looks, states: Floats, interval: float, stops: bool) -> tuple[Floats, Longs]:
+def _shown(how: PathLooks, states: Floats, interval: float, stops: bool) -> tuple[Floats, Longs]:
     """The states (M, 7) that are shown in key intervals, or in stops from their ends, and in which of them (M,).
 
     A way on which one goes from state to state begins with one that is in none, -1.
@@ -118,7 +118,7 @@ def _fastest(states: Floats, reach: float) -> float:
 
 @helper
 def _least_rooms(
-    how: Looks,
+    how: PathLooks,
     among: Neighbours,
     rows: Floats,
     owner: Longs,
@@ -163,7 +163,7 @@ def _least_rooms(
 
 
 @helper
-def _look(how: Looks, among: Neighbours, rows: Floats, at: Longs, farthest: float, room: Floats32) -> None:
+def _look(how: PathLooks, among: Neighbours, rows: Floats, at: Longs, farthest: float, room: Floats32) -> None:
     """Write the room in some states to `room` (M+1,)."""
     found = room_at(how.legs, among, rows[at], how.skin, farthest)
     for i in range(at.shape[0]):

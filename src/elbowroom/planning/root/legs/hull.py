@@ -14,8 +14,7 @@ from elbowroom.body.pose.kinematics import BodyModel, leg_capsules
 from elbowroom.body.root import HEIGHT, ROOT_STATE
 from elbowroom.by_reference import by_reference
 from elbowroom.jit import exact_kernel, helper, inner_exact_kernel
-from elbowroom.world.ground.ground import PLAIN, level_about
-from elbowroom.world.ground.ground import Ground as Underfoot
+from elbowroom.world.ground.ground import PLAIN, Ground, level_about
 from elbowroom.world.obstacles.broad_phase import Grids, meeting_any_order
 
 Floats = NDArray[np.float64]
@@ -41,21 +40,21 @@ class StrideHull(NamedTuple):
 
 
 @by_reference
-class Ground(NamedTuple):
+class LowBoxes(NamedTuple):
     """What stands on the ground, seen from above."""
 
     corners: Floats  # (B, P, 2) x and z of the corners of what is low enough of each box
     least: Floats  # (B, 2)
     most: Floats  # (B, 2)
     heights: Floats  # (B, 2) from where to where each box reaches
-    underfoot: Underfoot  # what feet stand on; on the plane heights do not count
+    underfoot: Ground  # what feet stand on; on the plane heights do not count
     tall: float  # metres that legs reach above that
 
 
 _ENDS = np.array([(i, i + step) for step in (1, 2, 4) for i in range(8) if not i & step])  # a box's edges
 
 
-def ground_below(corners: Floats, height: float, underfoot: Underfoot = PLAIN, tall: float = np.inf) -> Ground:
+def boxes_below(corners: Floats, height: float, underfoot: Ground = PLAIN, tall: float = np.inf) -> LowBoxes:
     """What the parts of boxes below a height cover; `corners` (B, 8, 3) each partly below."""
     one, other = corners[:, _ENDS[:, 0]], corners[:, _ENDS[:, 1]]
     rise = other[..., 1] - one[..., 1]
@@ -68,19 +67,19 @@ def ground_below(corners: Floats, height: float, underfoot: Underfoot = PLAIN, t
     low = np.where(below[..., None], low, np.take_along_axis(low, below.argmax(axis=1)[:, None, None], axis=1))
     points = np.ascontiguousarray(low[..., [0, 2]])
     heights = np.stack([corners[:, :, 1].min(axis=1), corners[:, :, 1].max(axis=1)], axis=1)
-    return Ground(points, points.min(axis=1), points.max(axis=1), heights, underfoot, tall)
+    return LowBoxes(points, points.min(axis=1), points.max(axis=1), heights, underfoot, tall)
 
 
-def some_ground(ground: Ground, chosen: Bools | NDArray[np.int64]) -> Ground:
-    """That of some of the boxes."""
-    corners, least, most, heights, underfoot, tall = ground
-    return Ground(corners[chosen], least[chosen], most[chosen], heights[chosen], underfoot, tall)
+def some_boxes(boxes: LowBoxes, chosen: Bools | NDArray[np.int64]) -> LowBoxes:
+    """Some of them."""
+    corners, least, most, heights, underfoot, tall = boxes
+    return LowBoxes(corners[chosen], least[chosen], most[chosen], heights[chosen], underfoot, tall)
 
 
-def joined_ground(one: Ground, other: Ground) -> Ground:
-    """That of the boxes of both, on the ground of the first."""
+def joined_boxes(one: LowBoxes, other: LowBoxes) -> LowBoxes:
+    """Those of both, on the ground of the first."""
     corners, least, most, heights = (np.concatenate([a, b]) for a, b in zip(one[:4], other[:4], strict=True))
-    return Ground(corners, least, most, heights, one.underfoot, one.tall)
+    return LowBoxes(corners, least, most, heights, one.underfoot, one.tall)
 
 
 def stride_hull(model: BodyModel) -> StrideHull:
@@ -102,7 +101,7 @@ def stride_hull(model: BodyModel) -> StrideHull:
 
 
 @helper
-def _meets(x: float, z: float, heading: float, near: float, low: Floats, high: Floats, ground: Ground) -> bool:
+def _meets(x: float, z: float, heading: float, near: float, low: Floats, high: Floats, boxes: LowBoxes) -> bool:
     """Whether the rectangle from `low` to `high` (2,), to the left and ahead of a place, may meet a box.
 
     Of floors above one another that which is about as high as `near`.
@@ -113,23 +112,23 @@ def _meets(x: float, z: float, heading: float, near: float, low: Floats, high: F
     middle_x, middle_z = x + left * cosine + ahead * sine, z - left * sine + ahead * cosine
     span_x, span_z = wide * abs(cosine) + deep * abs(sine), wide * abs(sine) + deep * abs(cosine)
     found, floor, roof = False, -np.inf, np.inf
-    if not ground.underfoot.plain:
-        level = level_about(ground.underfoot, middle_x, middle_z, max(span_x, span_z), near)
+    if not boxes.underfoot.plain:
+        level = level_about(boxes.underfoot, middle_x, middle_z, max(span_x, span_z), near)
         if level > -np.inf:
-            floor, roof = level + _EVEN, level + ground.tall
-    for b in range(ground.corners.shape[0]):
-        if ground.heights[b, 1] <= floor or ground.heights[b, 0] >= roof:
+            floor, roof = level + _EVEN, level + boxes.tall
+    for b in range(boxes.corners.shape[0]):
+        if boxes.heights[b, 1] <= floor or boxes.heights[b, 0] >= roof:
             continue
         if (
-            middle_x + span_x < ground.least[b, 0]
-            or middle_x - span_x > ground.most[b, 0]
-            or middle_z + span_z < ground.least[b, 1]
-            or middle_z - span_z > ground.most[b, 1]
+            middle_x + span_x < boxes.least[b, 0]
+            or middle_x - span_x > boxes.most[b, 0]
+            or middle_z + span_z < boxes.least[b, 1]
+            or middle_z - span_z > boxes.most[b, 1]
         ):
             continue
         least_l, most_l, least_a, most_a = np.inf, -np.inf, np.inf, -np.inf
-        for c in range(ground.corners.shape[1]):
-            dx, dz = ground.corners[b, c, 0] - x, ground.corners[b, c, 1] - z
+        for c in range(boxes.corners.shape[1]):
+            dx, dz = boxes.corners[b, c, 0] - x, boxes.corners[b, c, 1] - z
             across, along = dx * cosine - dz * sine, dx * sine + dz * cosine
             least_l, most_l = min(least_l, across), max(most_l, across)
             least_a, most_a = min(least_a, along), max(most_a, along)
@@ -186,7 +185,7 @@ def _change(a: Floats, b: Floats) -> float:
 
 @exact_kernel
 def to_check(
-    states: Floats, interval: float, braking: float, swinging: float, skin: float, hull: StrideHull, ground: Ground
+    states: Floats, interval: float, braking: float, swinging: float, skin: float, hull: StrideHull, boxes: LowBoxes
 ) -> tuple[Bools, Bools]:
     """Which key intervals (n,), and which stops from their ends (n,), may come within `skin` of something.
 
@@ -200,18 +199,18 @@ def to_check(
         a, b = states[k], states[k + 1]
         bulge = 0.125 * interval * _change(a, b)
         known = _swept(hull, a, b, b[2] - a[2], skin + _MORE + bulge, low, high)
-        moving[k] = not known or _meets(a[0], a[1], a[2], _height(a), low, high, ground)
+        moving[k] = not known or _meets(a[0], a[1], a[2], _height(a), low, high, boxes)
         speed, sine, cosine = np.sqrt(b[3] * b[3] + b[4] * b[4]), np.sin(b[2]), np.cos(b[2])
         lasting, turning = 0.5 * speed / braking + 0.5 * interval, 0.5 * abs(b[5]) / swinging + 0.5 * interval
         rest[0] = b[0] + lasting * (b[3] * sine + b[4] * cosine)
         rest[1] = b[1] + lasting * (b[3] * cosine - b[4] * sine)
         known = _swept(hull, b, rest, turning * b[5], skin + _MORE, low, high)
-        stopping[k] = not known or _meets(b[0], b[1], b[2], _height(b), low, high, ground)
+        stopping[k] = not known or _meets(b[0], b[1], b[2], _height(b), low, high, boxes)
     return moving, stopping
 
 
 @exact_kernel
-def route_is_open(route: Floats, near: float, half: float, ground: Ground) -> bool:
+def route_is_open(route: Floats, near: float, half: float, boxes: LowBoxes) -> bool:
     """Whether nothing stands on the strips of half width `half` along a route (m, 2), corner points x and z.
 
     It begins at a height `near`. Strips over ground that is not the plane are looked at in short pieces.
@@ -221,27 +220,27 @@ def route_is_open(route: Floats, near: float, half: float, ground: Ground) -> bo
     for i in range(route.shape[0] - 1):
         dx, dz = route[i + 1, 0] - route[i, 0], route[i + 1, 1] - route[i, 1]
         length, heading = np.hypot(dx, dz), np.arctan2(dx, dz)
-        count = 1 if ground.underfoot.plain else max(int(np.ceil(length / _PIECE)), 1)
+        count = 1 if boxes.underfoot.plain else max(int(np.ceil(length / _PIECE)), 1)
         high[1] = length / count + half
         for k in range(count):
-            if _meets(route[i, 0] + dx * k / count, route[i, 1] + dz * k / count, heading, near, low, high, ground):
+            if _meets(route[i, 0] + dx * k / count, route[i, 1] + dz * k / count, heading, near, low, high, boxes):
                 return False
     return True
 
 
 @inner_exact_kernel
-def ground_near(ground: Ground, grids: Grids, x: float, z: float, reach: float) -> Ground:
-    """What of it may come within `reach` metres of a place; `grids` as `grids_of` its bounds."""
+def boxes_near(boxes: LowBoxes, grids: Grids, x: float, z: float, reach: float) -> LowBoxes:
+    """Those that may come within `reach` metres of a place; `grids` as `grids_of` its bounds."""
     near = meeting_any_order(grids, x - reach, z - reach, x + reach, z + reach)
     count = near.shape[0]
-    found = Ground(
-        np.empty((count, ground.corners.shape[1], 2)), np.empty((count, 2)), np.empty((count, 2)), np.empty((count, 2)),
-        ground.underfoot, ground.tall,
+    found = LowBoxes(
+        np.empty((count, boxes.corners.shape[1], 2)), np.empty((count, 2)), np.empty((count, 2)), np.empty((count, 2)),
+        boxes.underfoot, boxes.tall,
     )  # fmt: skip
     for n in range(count):
         for i in range(2):
-            found.least[n, i], found.most[n, i] = ground.least[near[n], i], ground.most[near[n], i]
-            found.heights[n, i] = ground.heights[near[n], i]
-            for c in range(ground.corners.shape[1]):
-                found.corners[n, c, i] = ground.corners[near[n], c, i]
+            found.least[n, i], found.most[n, i] = boxes.least[near[n], i], boxes.most[near[n], i]
+            found.heights[n, i] = boxes.heights[near[n], i]
+            for c in range(boxes.corners.shape[1]):
+                found.corners[n, c, i] = boxes.corners[near[n], c, i]
     return found

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.root import RootState
-from elbowroom.planning.root.legs.along_path import Looks, free_part
+from elbowroom.planning.root.legs.along_path import PathLooks, free_part
 from elbowroom.planning.root.legs.hull import to_check
 from elbowroom.planning.root.legs.leg_cache import KnownLegs
 from elbowroom.planning.root.legs.lower_body import LowerBody
@@ -29,7 +29,7 @@ class LegCheck:
     def __init__(self, body: LowerBody, bounds: MotionBounds, skin: float, spacing: float) -> None:
         """`skin` is the clearance to ask for in metres, `spacing` the seconds between samples."""
         self.body, self.bounds, self.skin, self.spacing = body, bounds, skin, spacing
-        self.looks = Looks(body.legs, body.hull, bounds, skin, spacing)
+        self.looks = PathLooks(body.legs, body.hull, bounds, skin, spacing)
         self.known = KnownLegs()
 
     def reset(self) -> None:
@@ -91,7 +91,7 @@ class FreeLegs:
         bounds = self._check.bounds
         return to_check(
             states, self._interval, bounds.braking, bounds.turn_acceleration, skin, self._check.body.hull,
-            self._near.ground,
+            self._near.boxes,
         )  # fmt: skip
 
     def _kept_in_motion(self, states: Floats) -> int:

@@ -13,7 +13,7 @@ from elbowroom.body.pose.kinematics import BodyModel, body_model, leg_capsules
 from elbowroom.body.root import ROOT_STATE
 from elbowroom.by_reference import by_reference
 from elbowroom.planning.model.footing import Footing
-from elbowroom.planning.root.legs.hull import StrideHull, ground_below, some_ground, stride_hull
+from elbowroom.planning.root.legs.hull import StrideHull, boxes_below, some_boxes, stride_hull
 from elbowroom.planning.root.legs.neighbours import Neighbours
 from elbowroom.planning.root.legs.room_of_legs import Legs, room_at
 from elbowroom.world.ground import ground as walked
@@ -21,7 +21,7 @@ from elbowroom.world.ground.ground import STEP, heights_along, heights_beside, t
 from elbowroom.world.obstacles.broad_phase import grids_of, meeting
 from elbowroom.world.obstacles.clearance import clearance
 from elbowroom.world.obstacles.obstacles import Obstacles
-from elbowroom.world.walkable import Stance, WalkableMap, stance_segments, walkable_window
+from elbowroom.world.walkable import StanceCapsule, WalkableMap, stance_segments, walkable_window
 
 Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
@@ -41,13 +41,13 @@ _LOW = 0.1  # metres: lower end of the stance capsule's axis
 class Measures(NamedTuple):
     """What is known of somebody's legs anywhere."""
 
-    stance: Stance  # a vertical capsule as broad as legs and pelvis in a walk and as high as the pelvis
+    stance: StanceCapsule  # a vertical capsule as broad as legs and pelvis in a walk and as high as the pelvis
     height: float  # of the pelvis, metres
     reach: float  # how far the legs reach in a run, with a little to spare, metres
     hull: StrideHull  # how far they reach in any stride
 
 
-class Grid(NamedTuple):
+class WindowGrid(NamedTuple):
     """A grid on the ground, as `walkable_window` has it, and where one comes to it."""
 
     origin: tuple[float, float]
@@ -79,8 +79,8 @@ class LowerBody:
         feet, sole = self.footing.feet, self.footing.sole
         self.legs = Legs(self.model.lower, self.radii, feet, sole, self.reach, self._tall)
         self._obstacles, self._low = obstacles, np.flatnonzero(low)
-        self.ground = ground_below(corners[low], height, ground, tall)
-        self.grids = grids_of(self.ground.least, self.ground.most)
+        self.boxes = boxes_below(corners[low], height, ground, tall)
+        self.grids = grids_of(self.boxes.least, self.boxes.most)
         self._near: tuple[tuple[int, int, float, int], Neighbours] | None = None
 
     def near(self, x: float, z: float, reach: float, height: float = 0.0) -> Neighbours:
@@ -94,9 +94,9 @@ class LowerBody:
             near = meeting(self.grids, (x - far, z - far), (x + far, z + far))
             low, high = self.footing.heights_between(asked[3] - _CLIMB, asked[3] + _CLIMB)
             if math.isfinite(low):
-                own = self.ground.heights[near]
+                own = self.boxes.heights[near]
                 near = near[(own[:, 0] <= high) & (own[:, 1] >= low)]
-            self._near = asked, Neighbours(self._obstacles.picked(self._low[near]), some_ground(self.ground, near))
+            self._near = asked, Neighbours(self._obstacles.picked(self._low[near]), some_boxes(self.boxes, near))
         return self._near[1]
 
     def clearance(self, among: Neighbours, states: Floats, spare: float = 0.0, farthest: float = math.inf) -> Floats32:
@@ -136,12 +136,12 @@ class LowerBody:
         return tops
 
     @property
-    def raised_stance(self) -> Stance:
+    def raised_stance(self) -> StanceCapsule:
         """The stance capsule above all that is a step high."""
         low = self.footing.ground.step + self.stance.radius
         return self.stance._replace(low=low, high=max(self.stance.high, low))
 
-    def window(self, among: Neighbours, grid: Grid) -> WalkableMap:
+    def window(self, among: Neighbours, grid: WindowGrid) -> WalkableMap:
         """The clearance of the stance capsule over a grid; where the ground is not plain, above it, as on a way."""
         origin, heading, shape, cell, farthest = grid[:5]
         if self.footing.plain:
@@ -165,7 +165,7 @@ def _measures(humanoid: Humanoid) -> Measures:
     model = body_model(humanoid)
     walk, run = (_stride(model, speed) for speed in (_WALK, _RUN))
     radius, height = float(walk[:, 0].max()), float(walk[:, 1].max())
-    stance = Stance(radius, _LOW, max(height - radius, _LOW))
+    stance = StanceCapsule(radius, _LOW, max(height - radius, _LOW))
     return Measures(stance, height, float(run.max()) + _SPARE, stride_hull(model))
 
 

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from elbowroom.body.pose.kinematics import leg_capsules
 from elbowroom.jit import kernel
-from elbowroom.planning.root.legs.hull import ground_below
+from elbowroom.planning.root.legs.hull import boxes_below
 from elbowroom.planning.root.legs.lower_body import LowerBody
 from elbowroom.planning.root.legs.neighbours import Neighbours
 from elbowroom.world.obstacles.clearance import clearance_into
@@ -93,7 +93,7 @@ class MovingAround:
         staying = some_of(span_of(grown_aside(self._swept, _POLITE), 0), stays)
         corners = corners_of(staying)
         low = corners[:, :, 1].min(axis=1) < self._body.height
-        return Neighbours(some_of(staying, low), ground_below(corners[low], self._body.height))
+        return Neighbours(some_of(staying, low), boxes_below(corners[low], self._body.height))
 
     def gap(self, states: Floats, radius: float, height: float) -> float:
         """The least distance, metres, of an upright cylinder from what moves, at the key states (n+1, 7) of a path.

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.by_reference import by_reference
-from elbowroom.planning.root.legs.hull import Ground, joined_ground, some_ground
+from elbowroom.planning.root.legs.hull import LowBoxes, joined_boxes, some_boxes
 from elbowroom.world.obstacles.layout import Nearby
 from elbowroom.world.obstacles.obstacles import EVERY_HEIGHT, Span
 from elbowroom.world.obstacles.rows import is_empty, joined, some_of
@@ -17,10 +17,10 @@ Floats = NDArray[np.float64]
 
 @by_reference
 class Neighbours(NamedTuple):
-    """Obstacles and the ground that they stand on."""
+    """Obstacles, and what is low of them as boxes seen from above."""
 
     obstacles: Nearby
-    ground: Ground
+    boxes: LowBoxes
 
     @property
     def empty(self) -> bool:
@@ -29,19 +29,19 @@ class Neighbours(NamedTuple):
 
     def around(self, places: Floats, reach: float, heights: Span = EVERY_HEIGHT) -> "Neighbours":
         """Those that may come within `reach` metres of one of `places` (N, 2), at some of these heights."""
-        ground, (low_x, low_z), (high_x, high_z) = self.ground, places.min(axis=0) - reach, places.max(axis=0) + reach
-        near = (ground.least[:, 0] <= high_x) & (ground.most[:, 0] >= low_x)
-        near &= (ground.least[:, 1] <= high_z) & (ground.most[:, 1] >= low_z)
-        near &= (ground.heights[:, 0] <= heights[1]) & (ground.heights[:, 1] >= heights[0])
+        boxes, (low_x, low_z), (high_x, high_z) = self.boxes, places.min(axis=0) - reach, places.max(axis=0) + reach
+        near = (boxes.least[:, 0] <= high_x) & (boxes.most[:, 0] >= low_x)
+        near &= (boxes.least[:, 1] <= high_z) & (boxes.most[:, 1] >= low_z)
+        near &= (boxes.heights[:, 0] <= heights[1]) & (boxes.heights[:, 1] >= heights[0])
         if near.all():
             return self
-        return Neighbours(some_of(self.obstacles, near), some_ground(self.ground, near))
+        return Neighbours(some_of(self.obstacles, near), some_boxes(self.boxes, near))
 
     def above(self, floor: float, top: float = math.inf) -> "Neighbours":
         """Those that rise above a height and begin below another."""
-        rises = (self.ground.heights[:, 1] > floor) & (self.ground.heights[:, 0] < top)
-        return self if rises.all() else Neighbours(some_of(self.obstacles, rises), some_ground(self.ground, rises))
+        rises = (self.boxes.heights[:, 1] > floor) & (self.boxes.heights[:, 0] < top)
+        return self if rises.all() else Neighbours(some_of(self.obstacles, rises), some_boxes(self.boxes, rises))
 
     def __add__(self, more: "Neighbours") -> "Neighbours":  # type: ignore[override]
         """These and others."""
-        return Neighbours(joined(self.obstacles, more.obstacles), joined_ground(self.ground, more.ground))
+        return Neighbours(joined(self.obstacles, more.obstacles), joined_boxes(self.boxes, more.boxes))

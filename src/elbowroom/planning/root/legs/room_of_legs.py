@@ -10,7 +10,7 @@ from elbowroom.body.root import HEIGHT
 from elbowroom.by_reference import by_reference
 from elbowroom.jit import exact_kernel, helper
 from elbowroom.planning.model.footing import floors_under, levelled, lift_feet, set_rises
-from elbowroom.planning.root.legs.hull import Ground
+from elbowroom.planning.root.legs.hull import LowBoxes
 from elbowroom.planning.root.legs.neighbours import Neighbours
 from elbowroom.world.ground.sole import Sole
 from elbowroom.world.obstacles.clearance import lower_clearance
@@ -44,20 +44,20 @@ def room_at(legs: Legs, among: Neighbours, states: Floats, spare: float, farthes
     Feet may stand on what they stand on, also for who asks for `spare` metres; negative where there is no ground. More
     than `farthest` metres are not told apart.
     """
-    out, chosen = np.full(states.shape[0], np.inf, np.float32), _within(among.ground, states, legs.reach)
+    out, chosen = np.full(states.shape[0], np.inf, np.float32), _within(among.boxes, states, legs.reach)
     if not chosen.any():
         return out
     out[:] = farthest
-    uneven, rows = not among.ground.underfoot.plain, states
+    uneven, rows = not among.boxes.underfoot.plain, states
     lowerings, there = np.zeros(states.shape[0]), np.ones(states.shape[0], np.bool_)
     if uneven:
         rows = states.copy()
-        there = set_rises(among.ground.underfoot, legs.posed.gait_legs, legs.posed.scale, legs.sole, rows)
-        _leave_out(among.ground, floors_under(rows).min(), rows[:, HEIGHT].max() + legs.tall, chosen)
+        there = set_rises(among.boxes.underfoot, legs.posed.gait_legs, legs.posed.scale, legs.sole, rows)
+        _leave_out(among.boxes, floors_under(rows).min(), rows[:, HEIGHT].max() + legs.tall, chosen)
     segments = posed_legs(legs.posed, rows, lowerings)
     if uneven:
         lift_feet(segments, legs.feet, posed_legs(legs.posed, levelled(rows), lowerings), legs.feet, legs.radii, spare)
-        _leave_out_far(among.ground, segments, legs.radii, farthest, chosen)
+        _leave_out_far(among.boxes, segments, legs.radii, farthest, chosen)
     near, count = room_for(among.obstacles, chosen.sum()), 0
     for b in range(chosen.shape[0]):
         if chosen[b]:
@@ -71,26 +71,26 @@ def room_at(legs: Legs, among: Neighbours, states: Floats, spare: float, farthes
 
 
 @helper
-def _within(ground: Ground, states: Floats, reach: float) -> Bools:
+def _within(boxes: LowBoxes, states: Floats, reach: float) -> Bools:
     """Which boxes (B,) may come within `reach` metres of one of the places of root states."""
-    chosen = np.empty(ground.least.shape[0], np.bool_)
+    chosen = np.empty(boxes.least.shape[0], np.bool_)
     low_x, high_x = states[:, 0].min() - reach, states[:, 0].max() + reach
     low_z, high_z = states[:, 1].min() - reach, states[:, 1].max() + reach
     for b in range(chosen.shape[0]):
-        across = ground.least[b, 0] <= high_x and ground.most[b, 0] >= low_x
-        chosen[b] = across and ground.least[b, 1] <= high_z and ground.most[b, 1] >= low_z
+        across = boxes.least[b, 0] <= high_x and boxes.most[b, 0] >= low_x
+        chosen[b] = across and boxes.least[b, 1] <= high_z and boxes.most[b, 1] >= low_z
     return chosen
 
 
 @helper
-def _leave_out(ground: Ground, floor: float, top: float, chosen: Bools) -> None:
+def _leave_out(boxes: LowBoxes, floor: float, top: float, chosen: Bools) -> None:
     """Of the boxes that are chosen leave out those that do not rise above a height, or begin above another."""
     for b in range(chosen.shape[0]):
-        chosen[b] = chosen[b] and ground.heights[b, 1] > floor and ground.heights[b, 0] < top
+        chosen[b] = chosen[b] and boxes.heights[b, 1] > floor and boxes.heights[b, 0] < top
 
 
 @helper
-def _leave_out_far(ground: Ground, segments: Floats32, radii: Floats32, farthest: float, chosen: Bools) -> None:
+def _leave_out_far(boxes: LowBoxes, segments: Floats32, radii: Floats32, farthest: float, chosen: Bools) -> None:
     """Of the boxes that are chosen leave out those farther than so many metres from a box round all legs (C, 6, N)."""
     least, most = np.full(3, np.inf), np.full(3, -np.inf)
     for c in range(segments.shape[0]):
@@ -101,6 +101,6 @@ def _leave_out_far(ground: Ground, segments: Floats32, radii: Floats32, farthest
                 most[i % 3] = max(most[i % 3], segments[c, i, n] + away)
     for b in range(chosen.shape[0]):
         if chosen[b]:
-            across = ground.least[b, 0] <= most[0] and ground.most[b, 0] >= least[0]
-            along = ground.least[b, 1] <= most[2] and ground.most[b, 1] >= least[2]
-            chosen[b] = across and along and ground.heights[b, 0] <= most[1] and ground.heights[b, 1] >= least[1]
+            across = boxes.least[b, 0] <= most[0] and boxes.most[b, 0] >= least[0]
+            along = boxes.least[b, 1] <= most[2] and boxes.most[b, 1] >= least[2]
+            chosen[b] = across and along and boxes.heights[b, 0] <= most[1] and boxes.heights[b, 1] >= least[1]

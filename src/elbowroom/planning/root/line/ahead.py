@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from elbowroom.body.root import RootState
 from elbowroom.planning.root.legs.hull import route_is_open
-from elbowroom.planning.root.legs.lower_body import Grid, LowerBody
+from elbowroom.planning.root.legs.lower_body import LowerBody, WindowGrid
 from elbowroom.planning.root.legs.neighbours import Neighbours
 from elbowroom.planning.root.line.line import TravelLine, straight_route
 from elbowroom.planning.root.line.route import find_route, route_points, shortened_route
@@ -72,7 +72,7 @@ class RouteFinder:
         """
         straight = straight_route(float(start.x), float(start.z), line, sight) if way is None else way
         checks, free, seen = 0, math.inf, (sight, start.height)
-        if self.above is not None or not route_is_open(straight, start.height, self.half, obstacles.ground):
+        if self.above is not None or not route_is_open(straight, start.height, self.half, obstacles.boxes):
             free, checks = self._free_length(straight, line, obstacles, start.height)
         if way is None and self.above is None and len(tight):
             looked, beside = self._beside(straight, line, obstacles, seen, tight)
@@ -89,7 +89,7 @@ class RouteFinder:
         """A route round `tight` places, where the straight one leaves little room, if there is one that is not much
         longer; of both so much is `seen` from a height. And how many places were looked at."""
         s, (sight, height), (margin, cell) = self._settings, seen, self._settings.going_round
-        if route_is_open(straight, height, self._body.stance.radius + margin, obstacles.ground):
+        if route_is_open(straight, height, self._body.stance.radius + margin, obstacles.boxes):
             return 0, None
         ahead = line.coordinates(*straight[0].tolist())[0]
         window = self._window(line, ahead, (cell, margin), obstacles, seen)
@@ -158,7 +158,7 @@ class RouteFinder:
         origin = line.point(ahead - behind, -middle)
         roomy = margin + s.route.roomy
         first = round(behind / cell)
-        window = self._body.window(obstacles, Grid(origin, line.heading, shape, cell, roomy, height, first))
+        window = self._body.window(obstacles, WindowGrid(origin, line.heading, shape, cell, roomy, height, first))
         if self.above is None:
             return window
         cells: Floats = np.indices(shape, np.float64).reshape(2, -1) * cell

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.kept_arrays import Arrays, kept
-from elbowroom.world.obstacles.meshes.parts import Parts, parts_of
+from elbowroom.world.obstacles.meshes.parts import ObstacleParts, parts_of
 from elbowroom.world.obstacles.shapes import Box, Mesh, Shape
 
 Floats = NDArray[np.float64]
@@ -15,7 +15,7 @@ _MANY = 2000  # triangles: fewer are cut at once
 _PIECE, _BOX, _ITSELF = 0, 1, 2  # what a part is: of a mesh, in it, or the obstacle itself
 
 
-def kept_parts(shapes: Sequence[Shape], centers: Floats, rotations: Floats, ground: float) -> Parts:
+def kept_parts(shapes: Sequence[Shape], centers: Floats, rotations: Floats, ground: float) -> ObstacleParts:
     """The same as `parts_of`."""
     meshes = [shape for shape in shapes if isinstance(shape, Mesh)]
     if sum(len(mesh.faces) for mesh in meshes) < _MANY:
@@ -26,7 +26,7 @@ def kept_parts(shapes: Sequence[Shape], centers: Floats, rotations: Floats, grou
     return _read(kept(__file__, whole, lambda: _written(parts_of(shapes, centers, rotations, ground), are)), shapes)
 
 
-def _written(parts: Parts, are: NDArray[np.bool_]) -> Arrays:
+def _written(parts: ObstacleParts, are: NDArray[np.bool_]) -> Arrays:
     """All but the obstacles that are parts of themselves."""
     own = parts.shapes
     kinds = [_PIECE if isinstance(shape, Mesh) else _BOX for shape in own]
@@ -42,7 +42,7 @@ def _written(parts: Parts, are: NDArray[np.bool_]) -> Arrays:
     }
 
 
-def _read(arrays: Arrays, shapes: Sequence[Shape]) -> Parts:
+def _read(arrays: Arrays, shapes: Sequence[Shape]) -> ObstacleParts:
     ends = np.cumsum(arrays["counts"]).tolist()
     soups = (
         Mesh(arrays["corners"][begin:end], np.arange(end - begin).reshape(-1, 3))
@@ -53,4 +53,4 @@ def _read(arrays: Arrays, shapes: Sequence[Shape]) -> Parts:
         arrays["kinds"].tolist(), arrays["owners"].tolist(), arrays["boxes"].tolist(), strict=True
     ):
         found.append(next(soups) if kind == _PIECE else Box(tuple(size)) if kind == _BOX else shapes[owner])
-    return Parts(tuple(found), arrays["centers"], arrays["rotations"], arrays["owners"])
+    return ObstacleParts(tuple(found), arrays["centers"], arrays["rotations"], arrays["owners"])

@@ -18,7 +18,7 @@ _UP = np.array([0.0, 1.0, 0.0])
 RISE = 0.005  # metres: triangles that rise no higher from the ground are the ground
 
 
-class Parts(NamedTuple):
+class ObstacleParts(NamedTuple):
     """B shapes and where they are."""
 
     shapes: tuple[Shape, ...]
@@ -27,7 +27,7 @@ class Parts(NamedTuple):
     owners: Longs  # (B,) the numbers of the obstacles that they are parts of, in order
 
 
-def parts_of(shapes: Sequence[Shape], centers: Floats, rotations: Floats, ground: float) -> Parts:
+def parts_of(shapes: Sequence[Shape], centers: Floats, rotations: Floats, ground: float) -> ObstacleParts:
     """The parts of obstacles of these shapes whose origins are at `centers` (N, 3), turned by `rotations` (N, 4).
 
     They stand on level ground of that height.
@@ -35,8 +35,8 @@ def parts_of(shapes: Sequence[Shape], centers: Floats, rotations: Floats, ground
     parts = [_cut(*posed, ground) for posed in zip(shapes, centers, rotations, strict=True)]
     owners = np.repeat(np.arange(len(parts)), [len(own.shapes) for own in parts])
     if not parts:
-        return Parts((), centers, rotations, owners)
-    return Parts(
+        return ObstacleParts((), centers, rotations, owners)
+    return ObstacleParts(
         tuple(shape for own in parts for shape in own.shapes),
         np.concatenate([own.centers for own in parts]),
         np.concatenate([own.rotations for own in parts]),
@@ -53,14 +53,14 @@ def above_ground(mesh: Mesh, center: Floats, turn: Floats, ground: float) -> Mes
     return Mesh(mesh.vertices, mesh.faces[rises]) if rises.any() else None
 
 
-def _cut(shape: Shape, center: Floats, turn: Floats, ground: float) -> Parts:
+def _cut(shape: Shape, center: Floats, turn: Floats, ground: float) -> ObstacleParts:
     if not isinstance(shape, Mesh):
         return _in_one_place((shape,), center, turn)
     standing = above_ground(shape, center, turn, ground)
     up = quaternion.rotate(quaternion.conjugate(turn), _UP)
     pieces = _in_one_place(pieces_of(standing, up) if standing is not None else (), center, turn)
     inner = _within(shape, center, turn, ground)
-    return Parts(
+    return ObstacleParts(
         pieces.shapes + inner.shapes,
         np.concatenate([pieces.centers, inner.centers]),
         np.concatenate([pieces.rotations, inner.rotations]),
@@ -68,12 +68,12 @@ def _cut(shape: Shape, center: Floats, turn: Floats, ground: float) -> Parts:
     )
 
 
-def _in_one_place(shapes: tuple[Shape, ...], center: Floats, turn: Floats) -> Parts:
+def _in_one_place(shapes: tuple[Shape, ...], center: Floats, turn: Floats) -> ObstacleParts:
     many = len(shapes)
-    return Parts(shapes, np.tile(center, (many, 1)), np.tile(turn, (many, 1)), np.zeros(many, np.int64))
+    return ObstacleParts(shapes, np.tile(center, (many, 1)), np.tile(turn, (many, 1)), np.zeros(many, np.int64))
 
 
-def _within(mesh: Mesh, center: Floats, turn: Floats, ground: float) -> Parts:
+def _within(mesh: Mesh, center: Floats, turn: Floats, ground: float) -> ObstacleParts:
     """The boxes in what a mesh encloses, those that rise from the ground."""
     boxes = inner_boxes(mesh)
     rotations = quaternion.multiply(turn, quaternion.from_matrix(boxes.turns))
@@ -81,4 +81,4 @@ def _within(mesh: Mesh, center: Floats, turn: Floats, ground: float) -> Parts:
     up = quaternion.to_matrix(rotations)[:, 1]
     rises = centers[:, 1] + np.einsum("bi,bi->b", np.abs(up), boxes.halves) > ground + RISE
     shapes = tuple(Box((x, y, z)) for x, y, z in (2.0 * boxes.halves[rises]).tolist())
-    return Parts(shapes, centers[rises], rotations[rises], np.zeros(len(shapes), np.int64))
+    return ObstacleParts(shapes, centers[rises], rotations[rises], np.zeros(len(shapes), np.int64))

@@ -11,13 +11,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.jit import helper, kernel
-from elbowroom.world.obstacles.layout import KIND, PER_METRE, ROW, TURN, Kind
+from elbowroom.world.obstacles.layout import KIND, PER_METRE, ROW, TURN, ShapeKind
 from elbowroom.world.obstacles.pairs.capsule_box import lower_from_boxes, lower_from_rounded
 from elbowroom.world.obstacles.pairs.capsule_cylinder import lower_from_cylinders
 from elbowroom.world.obstacles.pairs.capsule_hull import lower_from_hulls
 from elbowroom.world.obstacles.pairs.capsule_mesh import lower_from_meshes
 
-_BOX, _ROUNDED, _CYLINDER, _HULL = int(Kind.BOX), int(Kind.ROUNDED), int(Kind.CYLINDER), int(Kind.HULL)
+_BOX, _ROUNDED, _CYLINDER, _HULL = (
+    int(ShapeKind.BOX),
+    int(ShapeKind.ROUNDED),
+    int(ShapeKind.CYLINDER),
+    int(ShapeKind.HULL),
+)
 _SCALE: Any = np.float32(PER_METRE)
 _METRES: Any = np.float32(1.0 / PER_METRE)
 

@@ -6,13 +6,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.jit import exact_kernel, helper, inner_exact_kernel
-from elbowroom.world.obstacles.layout import ROW, Kind
+from elbowroom.world.obstacles.layout import ROW, ShapeKind
 from elbowroom.world.obstacles.tracks.poses import LOOP, ONCE, PINGPONG, Tracks, pose_at
 
 Floats = NDArray[np.float64]
 Longs = NDArray[np.int64]
 
-_BOX = float(Kind.BOX)
+_BOX = float(ShapeKind.BOX)
 _PARTS = 4  # of a span of time in which a sweep is sampled
 
 

@@ -20,7 +20,7 @@ _WALK, _PHASES = 1.1, 16  # m/s; moments of a stride
 _TWISTS = DofGroup.WAIST.at.start + 1  # its place in `q`
 
 
-class Figure(NamedTuple):
+class Build(NamedTuple):
     """Half the breadth of an upper body, and its height, metres."""
 
     swinging: float  # with arms that swing
@@ -31,7 +31,7 @@ class Figure(NamedTuple):
     tall: float  # the crown above the ground
 
 
-def figure_of(humanoid: Humanoid, model: BodyModel) -> Figure:
+def build_of(humanoid: Humanoid, model: BodyModel) -> Build:
     """Measure a body in the stock walk."""
     states, count = np.zeros((_PHASES, ROOT_STATE)), _PHASES + 2
     states[:, 3], states[:, 6] = _WALK, np.arange(_PHASES) / _PHASES
@@ -46,4 +46,4 @@ def figure_of(humanoid: Humanoid, model: BodyModel) -> Figure:
     high = max(int(np.searchsorted(LEVELS, arms.max())), low + 1)
     swinging, broad, slim = float(aside[:_PHASES].max()), float(aside[-2]), float(aside[-1])
     tall = float((ends[:, :, 1, -2].max(axis=1) + model.body.radii).max())
-    return Figure(max(swinging, broad), broad, slim, low, high, tall)
+    return Build(max(swinging, broad), broad, slim, low, high, tall)

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from elbowroom.body.dof import DofGroup
 from elbowroom.planning.exact.joint.clearances import Lanes, clearances_under
-from elbowroom.planning.exact.joint.step import Surroundings
+from elbowroom.planning.exact.joint.step import PathSurroundings
 from elbowroom.planning.exact.lattice.drawing import drawn_postures
 from elbowroom.planning.exact.lattice.postures import blocks_of
 from elbowroom.planning.exact.refine.sampling import RefinementSettings, chosen
@@ -24,11 +24,11 @@ Bools = NDArray[np.bool_]
 _WAISTS = 6  # waists of a blocked slice under which their children are tried
 
 
-class Blocked(NamedTuple):
+class BlockedSlice(NamedTuple):
     """A slice that a group could not get through."""
 
     depth: int
-    around: Surroundings
+    around: PathSurroundings
     goal: Floats  # (d,)
     margin: float  # metres of clearance that a posture needs
     waists: Floats  # (F, d) that are free there, the best first
@@ -46,7 +46,7 @@ class Known(NamedTuple):
 def waists_for(
     body: OwnBody,
     known: Known,
-    blocked: Blocked,
+    blocked: BlockedSlice,
     settings: RefinementSettings,
     too_deep: Callable[[int, Floats], Bools],
 ) -> Floats:
@@ -67,7 +67,7 @@ def waists_for(
     return _worth(drawn, free, known.postures, blocked.goal, settings)
 
 
-def children_for(body: OwnBody, known: Known, blocked: Blocked, settings: RefinementSettings) -> Floats:
+def children_for(body: OwnBody, known: Known, blocked: BlockedSlice, settings: RefinementSettings) -> Floats:
     """A child's postures (k, d) that are free in a blocked slice under one of its waists, and unlike the known."""
     limb, carriers = known.limb, carriers_of(known.group)
     drawn = drawn_postures(known.group, blocked.goal, settings.drawn, settings.near)

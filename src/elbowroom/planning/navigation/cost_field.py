@@ -25,7 +25,7 @@ _ON_STAIR = 0.3  # metres that are looked ahead on what is steeper than an even 
 _BETTER = 1e-9  # metres by which a cost must be less to count
 
 
-class Prices(NamedTuple):
+class MetrePrices(NamedTuple):
     """What a metre costs."""
 
     slim: float  # metres of room without which there is no way
@@ -37,7 +37,7 @@ class Prices(NamedTuple):
     steep: float = 12.0  # extra for each metre that is walked where it is steeper by one: on the outside of a spiral
 
 
-class Field(NamedTuple):
+class CostField(NamedTuple):
     """Costs to a place from the N places of a map."""
 
     cost: Floats  # (N,) metres; infinite where there is no way or nobody looked
@@ -52,7 +52,7 @@ class Costly(NamedTuple):
     room: Floats32  # (N,) metres
     above: Floats32  # (N,) metres
     steep: Floats32  # (N,) metres up or down in a metre
-    prices: Prices
+    prices: MetrePrices
 
 
 @inner_exact_kernel
@@ -68,7 +68,7 @@ def price_at(costly: Costly, n: int) -> float:
 
 
 @exact_kernel
-def field_to(costly: Costly, goal: int, start: int, beyond: float) -> Field:
+def field_to(costly: Costly, goal: int, start: int, beyond: float) -> CostField:
     """The costs to the place `goal` of all that cost no more than `start` does, and `beyond` metres."""
     surfaces, count = costly.surfaces, costly.room.shape[0]
     cost, onward = np.full(count, np.inf), np.full(count, -1, np.int32)
@@ -101,7 +101,7 @@ def field_to(costly: Costly, goal: int, start: int, beyond: float) -> Field:
     for node in range(count):
         if not done[node]:
             cost[node], onward[node] = np.inf, -1
-    return Field(cost, onward)
+    return CostField(cost, onward)
 
 
 @helper
@@ -117,7 +117,7 @@ def _between(costly: Costly, node: int, m: int) -> float:
 
 
 @brief_exact_kernel
-def aim_from(field: Field, costly: Costly, node: int, i: float, j: float, far: float) -> int:
+def aim_from(field: CostField, costly: Costly, node: int, i: float, j: float, far: float) -> int:
     """The place to walk straight to from `node`, next to row `i` and column `j`: the farthest on the way within sight.
 
     In sight is what lies within `far` metres along the way, and to which the straight line costs no more than the
