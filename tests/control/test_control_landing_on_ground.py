@@ -81,3 +81,22 @@ def test_a_foot_on_a_block_shorter_than_itself_stands_on_its_ball() -> None:
         assert abs(ahead) <= TRIED * GAIT.scale + 1e-9
         if math.isclose(height, RISE):
             assert begin <= z + ahead + ball <= begin + length
+
+
+@pytest.mark.parametrize("over", [0.002, 0.02, 0.05])
+def test_a_foot_that_would_have_its_toes_alone_on_a_tread_stands_before_it_or_goes_on_onto_it(over: float) -> None:
+    """It stood in the air before the edge, or came down a little short, and then did."""
+    begin, ball = 1.0, float(GAIT.legs[LEFT, BALL])
+    front = ball + TOES * GAIT.scale
+    ahead, height = landed(begin, 0.6, begin - front + over)
+    stands = begin - front + over + ahead
+    assert stands + front < begin if height < 0.5 * RISE else begin - 0.15 * ball <= stands <= begin + 0.03
+
+
+def test_a_foot_keeps_a_centimetre_to_the_edge_that_it_comes_down_from() -> None:
+    begin, length = 0.5, 1.0
+    under = Footing(body_model(Humanoid.default()), Scene.of("empty", [], finish=(0.0, 9.0)).ground).sole
+    edge = begin + length
+    ahead, height = landed(begin, length, edge + under.back + 0.004)
+    assert abs(height) < 1e-9
+    assert 0.004 <= ahead <= 0.02

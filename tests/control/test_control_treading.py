@@ -116,9 +116,9 @@ def test_feet_that_go_up_and_down_are_set_down(backwards: bool) -> None:
     assert max(falls) < 0.01, falls
 
 
-def on_a_stair() -> Floats:
+def on_a_stair(begin: float = 2.0) -> Floats:
     """What is shown up and down a stair of four treads."""
-    begin, tread, rise, top = 2.0, 0.28, 0.17, 1.2
+    tread, rise, top = 0.28, 0.17, 1.2
     blocks = [
         {
             "type": "box",
@@ -152,6 +152,22 @@ def test_a_foot_whose_heel_hangs_over_an_edge_comes_down_flat() -> None:
                 assert foot[PITCH] > -0.02
                 hangs += 1
     assert hangs > 20
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("begin", [2.0, 2.18, 2.27])
+def test_who_goes_up_a_stair_stands_on_its_treads_wherever_in_a_stride_he_comes_to_it(begin: float) -> None:
+    """At times a foot stood before an edge, its toes alone over the tread, with the rest of it in the air."""
+    tread, stair, up = 0.28, on_a_stair(begin), 0
+    edges = begin + tread * np.arange(4)
+    for side in range(2):
+        feet, ball = stair[:, ROOT_STATE + FOOT * side :][:, :FOOT], GAIT.legs[side, BALL]
+        heights, places = stair[:, HEIGHT] + stair[:, RISES + 2 * side], in_world(stair, side, 0)[:, 1]
+        for foot, height, z in zip(feet, heights, places, strict=True):
+            if foot[SWING] <= 0.0 < z + ball - edges[0] and z < edges[-1]:
+                assert 0.17 * np.searchsorted(edges, z + 0.6 * ball) == pytest.approx(height, abs=0.05)
+                up += 1
+    assert up > 60
 
 
 def test_who_goes_down_a_stair_stands_on_its_treads() -> None:

@@ -37,10 +37,13 @@ _TRIED, _FARTHEST = 8, 11  # so often; where even its ball is in the air
 _LEVEL, _HOLLOW = 0.02, 0.006  # radians: less is level; metres under a heel
 _PLACES = 8  # from the ankle to where toes begin
 _TOES = 0.03  # metres of a standard leg, before the ball: with these on the ground it does not slide as it rolls
-# How well a foot stands: on ankle, ball and toes, without toes, on its ball, with so many of these places and more in
-# the air, or nowhere.
-_WHOLE, _NO_TOES, _ON_BALL, _IN_AIR, _NOWHERE = 0, 1, 2, 3, _PLACES + 8
+# How well a foot stands: on ankle, ball and toes, without toes, on its ball and half of what is behind it, on its toes,
+# with so many of these places and more in the air, or nowhere.
+_WHOLE, _NO_TOES, _ON_BALL, _ON_TOES, _IN_AIR, _NOWHERE = 0, 1, 2, 3, 4, _PLACES + 9
+_BEHIND_BALL = 0.15  # of the way from ankle to ball
+_BESIDE = 0.01  # metres of a standard leg by which a foot may land short of its place
 _DOWN_TWO, _STEP = _IN_AIR, 0.25  # how much worse it stands deeper than a step; metres of a standard leg
+_UNSTEADY = _ON_TOES  # and where it would stand on the edge behind it if it landed hardly short of there
 _BALL, _HEEL = 6, 7  # columns of `GaitShape.legs`
 
 
@@ -71,8 +74,8 @@ def _air(under: Underfoot, row: Floats, foot: FootPlace, ahead: float, lie: Lie)
 def _rank(under: Underfoot, who: Stepper, row: Floats, side: int, foot: FootPlace) -> tuple[int, Lie]:
     """How well a foot would stand at a place, less is better; and how it would lie.
 
-    It needs ground under its ankle and where its toes begin, or at least as far as that, not under its toes alone;
-    where it would not lie level under its heel too, on which it comes down.
+    It needs ground under its ankle and where its toes begin, or at least as far as that, or under its front half, not
+    under its toes alone; where it would not lie level under its heel too, on which it comes down.
     """
     front, heel = who.legs[side, _BALL] + _TOES * who.scale, who.legs[side, _HEEL]
     lie = stood_at(under.ground, under.sole, row, foot[0], foot[1], foot[2])
@@ -85,11 +88,19 @@ def _rank(under: Underfoot, who: Stepper, row: Floats, side: int, foot: FootPlac
         if stands and level:
             return _WHOLE if toes else _NO_TOES, lie
         if toes:
-            return _ON_BALL, lie
+            half = _air(under, row, foot, _BEHIND_BALL * who.legs[side, _BALL], lie) < _AIR
+            return _ON_BALL if half else _ON_TOES, lie
     count = 0
     for k in range(_PLACES + 1):
         count += 1 if _air(under, row, foot, front * k / _PLACES, lie) >= _AIR else 0
     return _IN_AIR + count, lie
+
+
+@helper
+def _is_steady(under: Underfoot, row: Floats, foot: FootPlace, lie: Lie, beside: float) -> bool:
+    """Whether a foot that lands so many metres behind its place is on no higher tread: the one that it came from."""
+    x, z, yaw = _moved(foot, -beside)
+    return bool(stood_at(under.ground, under.sole, row, x, z, yaw)[0] <= lie[0] + _AIR)
 
 
 @inner_exact_kernel
@@ -108,8 +119,11 @@ def farther_onto(
     best, farther, lies = _NOWHERE, 0.0, (NO_GROUND, 0.0)
     for k in range(2 * _FARTHEST + 1):
         ahead = _SHIFT * who.scale * ((k + 1) // 2) * (1.0 if k % 2 == 0 else -1.0)
-        rank, lie = _rank(under, who, row, side, _moved(goal, ahead))
+        place = _moved(goal, ahead)
+        rank, lie = _rank(under, who, row, side, place)
         rank += _DOWN_TWO if lie[0] < deepest else 0
+        if rank < min(best, _IN_AIR) and not _is_steady(under, row, place, lie, _BESIDE * who.scale):
+            rank += _UNSTEADY
         if rank < best:
             best, farther, lies = rank, ahead, lie
         if best == _WHOLE or (best <= _ON_BALL and k >= 2 * _TRIED):

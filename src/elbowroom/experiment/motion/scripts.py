@@ -20,6 +20,7 @@ _SETTLED = 2.5  # seconds after which a steady walk is measured
 _WIDE, _TREAD, _RISE, _STEPS = 1.8, 0.28, 0.17, 4  # metres, of a stair; its steps
 _SLOPE, _RAMP, _TOP = math.radians(12.0), 2.0, 1.5  # of a ramp; metres along it, and of the level ground on top
 _OFFSETS = (0.0, 0.13, 0.26, 0.39)  # seconds: a start and a stop at other places of the stride
+_BEGINS = (2.0, 2.09, 2.18, 2.27)  # metres from the start: a stair, a ramp and a sill at other places of the stride
 
 
 class Script(NamedTuple):
@@ -121,11 +122,15 @@ def _among_things() -> list[Script]:
 
 def _on_uneven_ground() -> list[Script]:
     """Up and down again: a stair, a ramp and a sill."""
-    made = [("stair", _stair(), 18.0), ("ramp", _ramp(), 12.0), ("sill", [_block(2.0, 0.1, 0.1)], 6.0)]
-    end = {"stair": 2.0 + 2.0 * _TREAD * _STEPS + _TOP, "ramp": 2.0 + 2.0 * _RAMP + _TOP, "sill": 2.0}
+    made = [
+        ("stair", _stair, 2.0 * _TREAD * _STEPS + _TOP, 18.0),
+        ("ramp", _ramp, 2.0 * _RAMP + _TOP, 12.0),
+        ("sill", _sill, 0.0, 6.0),
+    ]
     return [
-        Script(name, Scene.of(name, obstacles, finish=(0.0, end[name] + 2.0)), _held(_AHEAD), seconds)
-        for name, obstacles, seconds in made
+        Script(f"{name} {i}", Scene.of(name, of(begin), finish=(0.0, begin + along + 2.0)), _held(_AHEAD), seconds)
+        for name, of, along, seconds in made
+        for i, begin in enumerate(_BEGINS, 1)
     ]
 
 
@@ -133,14 +138,18 @@ def _block(begin: float, length: float, top: float) -> dict[str, Any]:
     return {"type": "box", "center": [0.0, 0.5 * top, begin + 0.5 * length], "size": [_WIDE, top, length]}
 
 
-def _stair() -> list[dict[str, Any]]:
+def _sill(begin: float) -> list[dict[str, Any]]:
+    return [_block(begin, 0.1, 0.1)]
+
+
+def _stair(begin: float) -> list[dict[str, Any]]:
     """Each step a block that goes through below those above it."""
     whole = 2.0 * _TREAD * _STEPS + _TOP
-    return [_block(2.0 + _TREAD * i, whole - 2.0 * _TREAD * i, _RISE * (i + 1)) for i in range(_STEPS)]
+    return [_block(begin + _TREAD * i, whole - 2.0 * _TREAD * i, _RISE * (i + 1)) for i in range(_STEPS)]
 
 
-def _ramp() -> list[dict[str, Any]]:
+def _ramp(begin: float) -> list[dict[str, Any]]:
     half, top = 0.5 * _WIDE, math.tan(_SLOPE) * _RAMP
     ends = ((0.0, 0.0), (_RAMP, top), (_RAMP + _TOP, top), (2.0 * _RAMP + _TOP, 0.0))
     points = [[x, height, along] for x in (-half, half) for along, height in ends]
-    return [{"type": "hull", "points": points, "center": [0.0, 0.0, 2.0]}]
+    return [{"type": "hull", "points": points, "center": [0.0, 0.0, begin]}]
