@@ -16,6 +16,7 @@ from elbowroom.cli.telling.first_run import compile_first
 from elbowroom.cli.telling.output import print_json, print_row
 from elbowroom.cli.telling.time_left import time_left_bar
 from elbowroom.errors import InputError
+from elbowroom.formats.file_bytes import check_ending
 
 if TYPE_CHECKING:
     from elbowroom.dataset.spec import DatasetSpec
@@ -145,6 +146,7 @@ def report(
     """Draw how near, how fast and in which postures is walked, and some walks from above, on one page."""
     _check_installed()
     check_arguments(written=[out])
+    check_ending(out, "a page", ".html", ".htm")
     from elbowroom.dataset.manifest import Manifest
 
     Manifest.of(folder)

@@ -25,6 +25,7 @@ from elbowroom.cli.telling.output import (
 from elbowroom.cli.telling.time_left import time_left_bar
 from elbowroom.errors import InputError
 from elbowroom.experiment.gauntlet.trial_settings import TrialSettings
+from elbowroom.formats.file_bytes import check_ending
 from elbowroom.planning.names import DEFAULT_PLANNER
 
 if TYPE_CHECKING:
@@ -95,7 +96,7 @@ def gauntlet(
     furnished = chosen_place(place, pieces, place_options(scale, up, ground, drop, passable), shapes=shapes)
     walker = _Walker(avatar, bones, height, include_hair)
     walker.check()
-    _check_chosen(save, show)
+    _check_chosen(save, show, bones)
     gauntlet = _gauntlet(furnished, level, courses, seed, TrialSettings(planner, queue), judge=judge, shapes=shapes)
     gauntlet = replace(gauntlet, avatar=walker.reference())
     if furnished is not None:
@@ -183,10 +184,11 @@ class _Walker(NamedTuple):
         return AvatarReference.of(self.load()) if any(option for option in self) else None
 
 
-def _check_chosen(save: tuple[int, Path] | None, show: int | None) -> None:
+def _check_chosen(save: tuple[int, Path] | None, show: int | None, bones: Path | None) -> None:
     """Raises `InputError` for a course that there cannot be, or a file that it cannot be kept in."""
     if save is not None:
-        check_arguments(written=[save[1]])
+        check_arguments(files=[bones], written=[save[1]])
+        check_ending(save[1], "a scene", ".json")
     for k in (show, None if save is None else save[0]):
         if k is not None and k < 0:
             raise InputError(f"course {k}: courses are counted from 0")

@@ -12,6 +12,7 @@ from elbowroom.cli.options.arguments import check_arguments, check_file
 from elbowroom.cli.options.place import Drop, GroundHeight, Passable, Scale, UpAxis, place_options
 from elbowroom.cli.telling.output import Bar, print_json, print_row, progress_bar
 from elbowroom.errors import InputError
+from elbowroom.formats.file_bytes import check_ending
 
 if TYPE_CHECKING:
     from elbowroom.body.humanoid import Humanoid
@@ -67,6 +68,8 @@ def inspect(
     from elbowroom.body.loading.settings import LoadSettings
 
     check_arguments(files=[bones], written=[pose_sheet, plan])
+    for picture in (pose_sheet, plan):
+        check_ending(picture, "a picture", ".png")
     if kind not in (None, "avatar", "place"):
         raise InputError(f"--as {kind!r}: must be avatar or place")
     settings, told = LoadSettings(bones, include_hair, height), place_options(scale, up, ground, drop, passable)

@@ -19,6 +19,7 @@ from elbowroom.cli.telling.time_left import time_left_bar
 from elbowroom.clips.style_names import PLAIN_NAME
 from elbowroom.errors import InputError
 from elbowroom.experiment.crossing_settings import CrossingSettings
+from elbowroom.formats.file_bytes import check_ending
 from elbowroom.planning.names import DEFAULT_PLANNER
 
 if TYPE_CHECKING:
@@ -66,6 +67,7 @@ def tour(
         raise InputError(f"--targets: {targets} is not between 1 and {MOST_TARGETS}")
     check_arguments(scenes=[scene], planners=[planner], queues=[queue], files=[avatar, bones], written=[record, plan])
     check_arguments(clips=clip_options.named_by(swing, dodge))
+    check_ending(plan, "a picture", ".png")
     if judge:
         check_judge("--no-judge")
     told, reading = place_options(scale, up, ground, drop, passable), settings_by(bones, height, include_hair)

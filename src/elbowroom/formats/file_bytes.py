@@ -1,4 +1,4 @@
-"""The bytes of a file that somebody named, if it is there and of sane size."""
+"""Files that somebody named: the bytes of one that is there and of sane size, and what one to come may be called."""
 
 from pathlib import Path
 
@@ -17,3 +17,9 @@ def read_file(path: Path, most: int) -> bytes:
     if size > most:
         raise InputError(f"{path}: has {size >> 20} MB: at most {most >> 20} MB are read")
     return data
+
+
+def check_ending(path: str | Path | None, what: str, *endings: str) -> None:
+    """Raises `InputError` where a file to come is not called as what it will hold: a slip would replace another one."""
+    if path is not None and Path(path).suffix.lower() not in endings:
+        raise InputError(f"{path}: {what} is written there: its name must end with {endings[0]}")

@@ -21,7 +21,8 @@ def check_arguments(
 ) -> None:
     """Raises `InputError` for names that nothing has, sizes out of range and files that are not there.
 
-    `clips` are references, FILE or FILE#CLIP; `written` are files to come, whose folders must be there.
+    `clips` are references, FILE or FILE#CLIP; `written` are files to come, whose folders must be there, each another
+    file than those that are read or written beside it.
     """
     from elbowroom.clips.reference import split_reference
     from elbowroom.control.settings import check_queue_size
@@ -41,12 +42,20 @@ def check_arguments(
     for scene in scenes:
         check_name(scene)
     named = [Path(scene) for scene in scenes if scene.lower() not in stock_names() and not is_course(scene)]
-    for file in (*named, *files, *(split_reference(clip)[0] for clip in clips)):
-        if file is not None:
-            check_file(file)
+    read = [file for file in (*named, *files, *(split_reference(clip)[0] for clip in clips)) if file is not None]
+    for file in read:
+        check_file(file)
+    _check_written([file for file in written if file is not None], read)
+
+
+def _check_written(written: list[Path], read: list[Path]) -> None:
+    taken = {os.path.realpath(file) for file in read}
     for file in written:
-        if file is not None and not file.parent.is_dir():
+        if not file.parent.is_dir():
             raise InputError(f"{file}: cannot be written (there is no folder {file.parent})")
+        if os.path.realpath(file) in taken:
+            raise InputError(f"{file}: is named twice in this call; choose another name for what is written")
+        taken.add(os.path.realpath(file))
 
 
 def check_file(file: Path) -> None:

@@ -5,6 +5,7 @@ from pathlib import Path
 
 from elbowroom.control.recordings.recording import Recording
 from elbowroom.errors import InputError
+from elbowroom.formats.file_bytes import check_ending
 from elbowroom.server.standalone.page import page_of_recording
 
 _SMALLEST, _LARGEST = 120, 4000  # pixels
@@ -24,7 +25,8 @@ class NotebookRun:
         return f'<iframe title="Elbowroom" style="{style}" srcdoc="{html.escape(self.html, quote=True)}"></iframe>'
 
     def save(self, path: str | Path) -> Path:
-        """Write the page as a file; raises `InputError` where it cannot be written."""
+        """Write the page as a file (`.html`); raises `InputError` where it cannot be written."""
+        check_ending(path, "a page", ".html", ".htm")
         try:
             Path(path).write_text(self.html, "utf-8")
         except OSError as error:
