@@ -15,6 +15,7 @@ from elbowroom.control.feet.in_step import in_step
 from elbowroom.control.frame import Frame, Phase
 from elbowroom.control.journey import Journey
 from elbowroom.control.key_frame_queue import KeyFrameQueue, Playback
+from elbowroom.control.numbers_told import is_number
 from elbowroom.control.others.neighbour import Neighbour, Walker
 from elbowroom.control.others.passing import expected, way_made
 from elbowroom.control.others.prediction import neighbour, slimmer
@@ -47,7 +48,19 @@ LONGEST_TURN = 1 / 40  # seconds: a longer step is played in several turns, each
 LONGEST_STEP = 60.0  # seconds
 _STANDING_RATE = 1e-6  # of the pace of the plan: slower is no playing
 _LEAVING = 0.015  # metres that others are taken to be away by who touches them
+_SAID = 100  # characters of what is said again
 _RESERVE = 2.4  # seconds of motion that are kept for late plans
+
+
+def _check_made_of(humanoid: object, scene: object, motions: object) -> None:
+    """Raises `InputError` for what a program takes for one of these."""
+    for name, given, kind, maker in (
+        ("humanoid", humanoid, Humanoid, "Humanoid.load"),
+        ("scene", scene, Scene, "Scene.load"),
+        ("motions", motions, MotionSet, "motions_of"),
+    ):
+        if not isinstance(given, kind):
+            raise InputError(f"{name}: {' '.join(str(given).split())[:_SAID]} is no {kind.__name__}: {maker} makes one")
 
 
 class Controller:
@@ -78,6 +91,7 @@ class Controller:
 
         Raises `InputError` for settings out of range and where the standing avatar touches an obstacle.
         """
+        _check_made_of(humanoid, scene, motions)
         self.humanoid = humanoid  # who walks
         self.scene = scene  # where
         self.settings = ControlSettings(planner, ahead.queue_size, ahead.interval, seed, assist)  # what it was told
@@ -137,11 +151,12 @@ class Controller:
         fast, by its `forward` and `run`. Raises `NoWayError` where no way leads there.
         """
         here = float(self.root.x), float(self.root.height), float(self.root.z)
-        return self.set_out(self.navigator.find(here, place), pace)
+        wanted = steering.checked(pace)  # before a way is sought
+        return self.set_out(self.navigator.find(here, place), wanted)
 
     def set_out(self, way: Way, pace: Command = FORWARD) -> Journey:
         """Go along a way that was found before."""
-        self.journey = Journey(self.navigator, way, pace)
+        self.journey = Journey(self.navigator, way, steering.checked(pace))
         return self.journey
 
     @property
@@ -191,6 +206,8 @@ class Controller:
         self._showing = self._standing_at(self.start, self._around)
 
     def _standing_at(self, start: RootState, around: PlanningScene) -> Showing:
+        if not isinstance(start, RootState) or not all(map(is_number, start)):
+            raise InputError(f"start: {start} is no RootState of finite numbers, such as RootState(x=1.0, z=2.0)")
         root = on_ground(self.scene, start)._replace(forward=0.0, lateral=0.0, turn=0.0, climb=0.0).as_array()
         showing = Showing(around, root, assist=self.settings.assist)
         if showing.clearance < 0.0:
@@ -268,7 +285,7 @@ class Controller:
         component of the command is no number, or `dt` is negative or longer than `LONGEST_STEP`.
         """
         wanted = steering.checked(command)
-        if not 0.0 <= dt <= LONGEST_STEP:
+        if not (is_number(dt) and 0.0 <= dt <= LONGEST_STEP):
             raise InputError(f"dt: {dt} is not between 0 and {LONGEST_STEP:g} seconds")
         wanted = self._on_the_way(wanted, dt)
         turns = math.ceil(dt / LONGEST_TURN)

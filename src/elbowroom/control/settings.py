@@ -1,8 +1,8 @@
 """What a controller is told once."""
 
-import math
 from dataclasses import dataclass
 
+from elbowroom.control.numbers_told import is_number, is_whole
 from elbowroom.errors import InputError
 from elbowroom.planning.names import DEFAULT_PLANNER, check_planner
 
@@ -29,7 +29,9 @@ class ControlSettings:
     def __post_init__(self) -> None:
         check_planner(self.planner)
         check_queue_size(self.queue_size)
-        if not (math.isfinite(self.interval) and 0.05 <= self.interval <= 1.0):
+        if not (is_number(self.interval) and 0.05 <= self.interval <= 1.0):
             raise InputError(f"interval: {self.interval} is not between 0.05 and 1 seconds")
+        if not is_whole(self.seed):
+            raise InputError(f"seed: {self.seed} is no whole number")
         if self.seed < 0:
             raise InputError(f"seed: {self.seed} is negative")

@@ -1,12 +1,13 @@
 """How much a command differs from the one that the motion in the queue was planned for."""
 
 import math
+from collections.abc import Collection
 from dataclasses import replace
-from itertools import chain
 
 import numpy as np
 from numpy.typing import NDArray
 
+from elbowroom.control.numbers_told import is_number
 from elbowroom.errors import InputError
 from elbowroom.planning.command import Command, angle_between
 
@@ -19,13 +20,22 @@ _TREMOR_SHARE = 0.02  # of shares
 
 def checked(command: Command) -> Command:
     """The command with its shares clipped to [-1, 1]; raises `InputError` where a component is no number."""
+    if not isinstance(command, Command):
+        raise InputError(f"command: {command!r} is no Command, such as Command(forward=1.0)")
     shares = (command.forward, command.strafe, command.turn)
-    if not all(map(math.isfinite, (*shares, command.direction or 0.0, *chain.from_iterable(command.way)))):
+    direction = 0.0 if command.direction is None else command.direction
+    if not all(map(is_number, (*shares, direction))) or not _is_way(command.way):
         raise InputError(f"command: {command} holds a value that is no finite number")
     if max(map(abs, shares)) <= 1.0:
         return command
     forward, strafe, turn = (max(-1.0, min(1.0, share)) for share in shares)
     return replace(command, forward=forward, strafe=strafe, turn=turn)
+
+
+def _is_way(way: object) -> bool:
+    return isinstance(way, Collection) and all(
+        isinstance(corner, Collection) and len(corner) == 2 and all(map(is_number, corner)) for corner in way
+    )
 
 
 def steady(held: Command, command: Command) -> Command:

@@ -18,7 +18,7 @@ def planner_names() -> tuple[str, ...]:
 def check_planner(name: str) -> None:
     """Raises `InputError` if there is no planner of this name."""
     if name not in _names:
-        raise InputError(f"planner {name[:40]!r} is unknown; there are {', '.join(_names)}")
+        raise InputError(f"planner {str(name)[:40]!r} is unknown; there are {', '.join(_names)}")
 
 
 def add_planner_name(name: str) -> None:

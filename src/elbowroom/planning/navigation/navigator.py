@@ -10,7 +10,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.humanoid import Humanoid
-from elbowroom.errors import InputError
 from elbowroom.planning.model.highest_step import as_climbed, as_stepped
 from elbowroom.planning.navigation.cost_field import MetrePrices
 from elbowroom.planning.navigation.girth import girth_of
@@ -20,6 +19,7 @@ from elbowroom.planning.navigation.way import (
     Place,
     Spot,
     Way,
+    checked,
     meant,
     placed,
     reachable_over,
@@ -99,9 +99,7 @@ class _Finder:
     def find(self, start: Place | Spot, goal: Place | Spot, closed: Sequence[tuple[Spot, float]] = ()) -> Way:
         """The way from one place to another, around closed discs; raises as `Navigator.find` and `again` do."""
         begin = placed(start, 0.0)
-        end = placed(goal, begin[1])
-        if not all(map(math.isfinite, end)):
-            raise InputError(f"goto: {', '.join(map(str, goal))} is no place")
+        end = placed(checked(goal), begin[1])
         ground, (x, _, z) = self._ground, end
         if not ground.holds(Rectangle(x, z, x, z)):
             edge = min(max(x, ground.low_x), ground.high_x), end[1], min(max(z, ground.low_z), ground.high_z)

@@ -19,6 +19,8 @@ _BESIDE = 0.6  # metres: who stands where a map has no room looks so far for the
 _DEARER = 0.3  # metres by which the straight line may be dearer than the way that was found
 _NOBODY = -1  # a start that no point is: costs to all points
 _BEYOND = 4.0  # metres off the way to which costs are known
+_FARTHEST = 1e6  # metres from the middle of a scene: no number beyond is meant
+_SAID = 100  # characters of what is no place
 _LOW = 0.05  # metres: a height that is not told
 _FLOOR, _HIGHER = 0.5, 4.0  # metres up and down that are the same floor; how many metres aside count as one beyond that
 _SAME = 1e-6  # metres: places nearer to each other are one
@@ -36,6 +38,19 @@ def said(place: Place) -> str:
     """A place in words: x and z, and between them its height where that is not nearly 0."""
     x, height, z = place
     return f"{x:.2f}, {z:.2f}" if abs(height) < _LOW else f"{x:.2f}, {height:.2f}, {z:.2f}"
+
+
+def checked(place: Place | Spot) -> Place | Spot:
+    """A place that a program asks for; raises `InputError` where it is none."""
+    try:
+        numbers = tuple(map(float, place))
+    except (TypeError, ValueError, OverflowError):
+        numbers = ()
+    if len(numbers) not in (2, 3) or not all(abs(number) <= _FARTHEST for number in numbers):
+        raise InputError(
+            f"goto: {' '.join(str(place).split())[:_SAID]} is no place: it is (x, z) or (x, height, z) in metres"
+        )
+    return place
 
 
 def placed(place: Place | Spot, height: float = 0.0) -> Place:
