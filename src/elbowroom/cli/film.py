@@ -61,9 +61,12 @@ def film(
             seconds = page.duration
             count = write_film(page, output, rate, speed, lambda done, all_: bar.move(done / all_, f"{done} of {all_}"))
     if json:
-        print_json({"film": str(output), "pictures": count, "fps": rate, "seconds": seconds, "size": list(look.size)})
-    else:
-        print(said("{0}: {1} pictures of {2} s", output, count, f"{seconds:.1f}"))
+        told = {"film": str(output), "pictures": count, "fps": rate, "seconds": seconds, "size": list(look.size)}
+        print_json(told | {"note": recorded.note})
+        return
+    print(said("{0}: {1} pictures of {2} s", output, count, f"{seconds:.1f}"))
+    if recorded.note is not None:
+        print(said("not whole: {0}", recorded.note))
 
 
 def _size(text: str) -> tuple[int, int]:

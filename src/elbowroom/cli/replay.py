@@ -60,12 +60,17 @@ def replay(
 
 
 def library_of(recorded: "Recording", avatar: Path | None) -> "Library":
-    """The scene and the avatar of a recording, and the recording to begin with."""
+    """The scene and the avatar of a recording, and the recording to begin with.
+
+    Raises `InputError` where the recording shows nothing; whether it is whole is in its `note` then.
+    """
     from elbowroom.body.loading.settings import LoadSettings
+    from elbowroom.export.shown import ShownFrames
     from elbowroom.server.stores.library import Library
     from elbowroom.world.places.same_model import with_model_beside
     from elbowroom.world.scene import Scene
 
+    ShownFrames.of(recorded)  # the page would wait for frames that never come
     header, path = recorded.header, str(recorded.path)
     told = header.avatar
     read = LoadSettings(told.bones or None, told.include_hair, told.height)
