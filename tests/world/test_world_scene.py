@@ -363,3 +363,12 @@ def test_a_scene_made_in_code_is_one_of_a_file() -> None:
 def test_how_a_model_is_read_is_not_told_of_other_scenes() -> None:
     with pytest.raises(InputError, match="c: how a model is read is told in the scene's own"):
         Scene.load("c", PlaceOptions(scale=2.0))
+
+
+@pytest.mark.parametrize("place", [None, 5, (), (1.0, 2.0, 3.0), "ab", ("a", "b"), (None, 1.0)])
+@pytest.mark.parametrize("name", ["start", "finish"])
+def test_a_scene_in_code_has_places_of_two_numbers(name: str, place: Any) -> None:
+    places: dict[str, Any] = {"start": (0.0, 0.0), "finish": (0.0, 5.0), name: place}
+    with pytest.raises(InputError, match=f"x: {name} is ") as caught:
+        Scene.of("x", [], **places)
+    assert "\n" not in str(caught.value)

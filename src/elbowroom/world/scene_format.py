@@ -4,8 +4,9 @@ A test holds reader and schema together on many broken documents.
 """
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
+from numbers import Real
 from pathlib import Path
 from typing import Any
 
@@ -223,6 +224,9 @@ def scene_document(
     moving: Sequence[Mapping[str, Any]] = (),
 ) -> dict[str, Any]:
     """The document of a scene from `start` straight to `finish` (x, z, metres), on ground `_AROUND` both."""
+    for what, place in (("start", start), ("finish", finish)):
+        if not _is_spot(place):
+            raise InputError(f"{name}: {what} is {' '.join(str(place).split())[:100]}: it must be (x, z) in metres")
     heading = math.atan2(finish[0] - start[0], finish[1] - start[1])
     document = {
         "format": FORMAT,
@@ -237,6 +241,10 @@ def scene_document(
         "obstacles": [dict(obstacle) for obstacle in obstacles],
     }
     return document | ({"moving": [dict(thing) for thing in moving]} if moving else {})
+
+
+def _is_spot(place: object) -> bool:
+    return isinstance(place, Collection) and len(place) == 2 and all(isinstance(length, Real) for length in place)
 
 
 def write_scene(scene: Scene) -> dict[str, Any]:
