@@ -13,9 +13,9 @@ from elbowroom.clips.motion_set import STOCK, MotionSet
 from elbowroom.control import steering
 from elbowroom.control.feet.in_step import in_step
 from elbowroom.control.frame import Frame, Phase
+from elbowroom.control.handed_over import check_made_of, is_number
 from elbowroom.control.journey import Journey
 from elbowroom.control.key_frame_queue import KeyFrameQueue, Playback
-from elbowroom.control.numbers_told import is_number
 from elbowroom.control.others.neighbour import Neighbour, Walker
 from elbowroom.control.others.passing import expected, way_made
 from elbowroom.control.others.prediction import neighbour, slimmer
@@ -48,19 +48,7 @@ LONGEST_TURN = 1 / 40  # seconds: a longer step is played in several turns, each
 LONGEST_STEP = 60.0  # seconds
 _STANDING_RATE = 1e-6  # of the pace of the plan: slower is no playing
 _LEAVING = 0.015  # metres that others are taken to be away by who touches them
-_SAID = 100  # characters of what is said again
 _RESERVE = 2.4  # seconds of motion that are kept for late plans
-
-
-def _check_made_of(humanoid: object, scene: object, motions: object) -> None:
-    """Raises `InputError` for what a program takes for one of these."""
-    for name, given, kind, maker in (
-        ("humanoid", humanoid, Humanoid, "Humanoid.load"),
-        ("scene", scene, Scene, "Scene.load"),
-        ("motions", motions, MotionSet, "motions_of"),
-    ):
-        if not isinstance(given, kind):
-            raise InputError(f"{name}: {' '.join(str(given).split())[:_SAID]} is no {kind.__name__}: {maker} makes one")
 
 
 class Controller:
@@ -91,7 +79,7 @@ class Controller:
 
         Raises `InputError` for settings out of range and where the standing avatar touches an obstacle.
         """
-        _check_made_of(humanoid, scene, motions)
+        check_made_of(humanoid, scene, motions)
         self.humanoid = humanoid  # who walks
         self.scene = scene  # where
         self.settings = ControlSettings(planner, ahead.queue_size, ahead.interval, seed, assist)  # what it was told

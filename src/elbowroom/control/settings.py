@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from elbowroom.control.numbers_told import is_number, is_whole
+from elbowroom.control.handed_over import is_number, is_whole
 from elbowroom.errors import InputError
 from elbowroom.planning.names import DEFAULT_PLANNER, check_planner
 

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.control.numbers_told import is_number
+from elbowroom.control.handed_over import is_number
 from elbowroom.errors import InputError
 from elbowroom.planning.command import Command, angle_between
 

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.root import RootState
-from elbowroom.errors import InputError
+from elbowroom.errors import InputError, in_a_line
 from elbowroom.geometry import quaternion
 from elbowroom.world.ground.making import walked_over
 from elbowroom.world.json_place import JsonPlace
@@ -226,7 +226,7 @@ def scene_document(
     """The document of a scene from `start` straight to `finish` (x, z, metres), on ground `_AROUND` both."""
     for what, place in (("start", start), ("finish", finish)):
         if not _is_spot(place):
-            raise InputError(f"{name}: {what} is {' '.join(str(place).split())[:100]}: it must be (x, z) in metres")
+            raise InputError(f"{name}: {what} is {in_a_line(place)}: it must be (x, z) in metres")
     heading = math.atan2(finish[0] - start[0], finish[1] - start[1])
     document = {
         "format": FORMAT,

@@ -40,7 +40,7 @@ from elbowroom.control.recordings.recorded_things import THING, Seen, ThingLog, 
 from elbowroom.control.recordings.recorded_ways import WAY, WayLog, Ways
 from elbowroom.control.recordings.walked_scene import SceneClock, walked_scene
 from elbowroom.control.settings import ControlSettings
-from elbowroom.errors import InputError
+from elbowroom.errors import InputError, in_a_line
 from elbowroom.planning.command import Command
 from elbowroom.planning.root.line.way_ahead import Corners
 from elbowroom.world.scene import Scene
@@ -290,7 +290,7 @@ class Recording:
         try:
             return RecordingHeader.from_json(data)
         except (ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
-            why = " ".join(str(error).split())[:_SAID]
+            why = in_a_line(error, _SAID)
             raise InputError(f"{self.path}: the header does not describe a run ({why})") from None
 
     def chunks(self) -> Iterator[Steps]:

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.errors import InputError
+from elbowroom.errors import InputError, in_a_line
 from elbowroom.planning.navigation.cost_field import CostField, Costly, MetrePrices, aim_from, field_to, straight_cost
 from elbowroom.planning.navigation.room_map import RoomMap
 
@@ -20,7 +20,6 @@ _DEARER = 0.3  # metres by which the straight line may be dearer than the way th
 _NOBODY = -1  # a start that no point is: costs to all points
 _BEYOND = 4.0  # metres off the way to which costs are known
 _FARTHEST = 1e6  # metres from the middle of a scene: no number beyond is meant
-_SAID = 100  # characters of what is no place
 _LOW = 0.05  # metres: a height that is not told
 _FLOOR, _HIGHER = 0.5, 4.0  # metres up and down that are the same floor; how many metres aside count as one beyond that
 _SAME = 1e-6  # metres: places nearer to each other are one
@@ -47,9 +46,7 @@ def checked(place: Place | Spot) -> Place | Spot:
     except (TypeError, ValueError, OverflowError):
         numbers = ()
     if len(numbers) not in (2, 3) or not all(abs(number) <= _FARTHEST for number in numbers):
-        raise InputError(
-            f"goto: {' '.join(str(place).split())[:_SAID]} is no place: it is (x, z) or (x, height, z) in metres"
-        )
+        raise InputError(f"goto: {in_a_line(place)} is no place: it is (x, z) or (x, height, z) in metres")
     return place
 
 

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.body.dof import DOF, LOCAL, LOCAL_GROUPS, SEARCH_ORDER, DofGroup, columns_of
+from elbowroom.body.gait.stride import CLIMB
 from elbowroom.body.pose.kinematics import BodyModel
 from elbowroom.body.pose.whole_body import WholeBody, posed_body
 from elbowroom.body.root import HEIGHT, RISES, ROOT_STATE
@@ -244,7 +245,7 @@ def _add_raising(parts: OwnParts, postures: Floats, roots: Floats, lengths: Floa
     That is measured: each posture (N, DOF) is held, in its root state (N, ROOT_STATE), over the ground of the next.
     """
     over = roots.copy()
-    over[:-1, RISES - 1 :] = roots[1:, RISES - 1 :]
+    over[:-1, CLIMB:] = roots[1:, CLIMB:]
     before, chests, _ = posed_body(parts.body, postures, roots)
     after, raised, _ = posed_body(parts.body, postures, over)
     moved = np.empty(before.shape[0])
