@@ -13,9 +13,10 @@ from elbowroom.clips.motion_set import STOCK, MotionSet
 from elbowroom.control import steering
 from elbowroom.control.feet.in_step import in_step
 from elbowroom.control.frame import Frame, Phase
-from elbowroom.control.handed_over import check_made_of, is_number
+from elbowroom.control.handed_over import is_number
 from elbowroom.control.journey import Journey
 from elbowroom.control.key_frame_queue import KeyFrameQueue, Playback
+from elbowroom.control.made_of import check_made_of
 from elbowroom.control.others.neighbour import Neighbour, Walker
 from elbowroom.control.others.passing import expected, way_made
 from elbowroom.control.others.prediction import neighbour, slimmer
