@@ -17,7 +17,7 @@ from elbowroom.planning.exact.memory.previous_plan import StartState
 from elbowroom.planning.exact.plan.upper_body import UpperBodyPlanner
 from elbowroom.planning.exact.plan.upper_body_search import Effort
 from elbowroom.planning.exact.settings import ExactSettings
-from elbowroom.planning.exact.sweep.crouch import ROUNDS, Crouch, node_lowerings
+from elbowroom.planning.exact.sweep.crouch import ROUNDS, Crouch, node_waists
 from elbowroom.planning.goal import natural_walk
 from elbowroom.planning.model.lowered_legs import LoweredLegs
 from elbowroom.planning.result import PlanStatus
@@ -153,8 +153,10 @@ def crouched(
     lowerings: Floats,
     folds: Callable[[Floats, Floats], NDArray[np.bool_]] = nowhere,
 ) -> Crouch:
-    """Standing on `legs` in postures of these `lowerings` (7, V)."""
-    return Crouch(legs, standing(), lambda: lowerings, folds, lambda: legs.shown(standing()))
+    """Standing on `legs` in postures of these `lowerings` (7, V), not bent."""
+    nodes = np.zeros((*lowerings.shape, DofGroup.WAIST.size))
+    nodes[..., COLUMN] = lowerings
+    return Crouch(legs, standing(), lambda: nodes, folds, lambda: legs.shown(standing()))
 
 
 def test_who_stays_upright_is_not_looked_at() -> None:
@@ -187,14 +189,14 @@ def test_in_the_end_nobody_crouches() -> None:
     np.testing.assert_array_equal(np.isinf(extra[1:]), lowerings[1:] > 0.0)
 
 
-def test_every_node_has_its_lowering() -> None:
+def test_every_node_has_its_waist() -> None:
     rng = np.random.default_rng(0)
     postures, goals, previous, start = (rng.uniform(size=shape) for shape in ((5, 3), (4, 3), (4, 3), (3,)))
-    found = node_lowerings(postures, goals, previous, start)
-    assert found.shape == (4, 9)
+    found = node_waists(postures, goals, previous, start)
+    assert found.shape == (4, 9, 3)
     for t in range(4):
-        np.testing.assert_array_equal(found[t, :5], postures[:, 2])
-        assert found[t, 5:].tolist() == [goals[t, 2], previous[t, 2], start[2], max(start[2], goals[t, 2])]
+        np.testing.assert_array_equal(found[t, :5], postures)
+        np.testing.assert_array_equal(found[t, 5:], [goals[t], previous[t], start, np.maximum(start, goals[t])])
 
 
 def test_who_would_lay_the_trunk_on_the_thighs_comes_up() -> None:
@@ -205,3 +207,25 @@ def test_who_would_lay_the_trunk_on_the_thighs_comes_up() -> None:
     assert np.isinf(extra[3, -1])
     assert not np.isinf(extra[0]).any()
     assert not crouch.rules_out(*way(0.5), extra)
+
+
+def test_who_bends_less_may_crouch_and_who_crouches_less_may_bend() -> None:
+    bends, lowerings = (grid.ravel() for grid in np.meshgrid([0.0, 0.4, 0.8, 1.2], [0.0, 0.3, 0.6]))
+    nodes = np.zeros((7, len(bends), DofGroup.WAIST.size))
+    nodes[..., 0], nodes[..., COLUMN] = bends, lowerings
+    legs, extra = LoweredLegs(MODEL, Obstacles()), np.zeros((7, len(bends)), np.float32)
+
+    def folds(keys: Floats, _: Floats) -> NDArray[np.bool_]:
+        return (keys[1:, 0] > 0.7) & (keys[1:, COLUMN] > 0.2)
+
+    crouch = Crouch(legs, standing(), lambda: nodes, folds, lambda: legs.shown(standing()))
+    keys, velocities = way(0.3)
+    keys[3:5, 0] = 0.8
+    assert crouch.rules_out(keys, velocities, extra)
+    as_deep = (bends > 0.7) & (lowerings > 0.2)
+    np.testing.assert_array_equal(np.isinf(extra[3]), as_deep)
+    assert not np.isinf(extra[[0, 1, 6]]).any()  # it stands upright there
+    for bend, lowering in ((0.4, 0.6), (1.2, 0.0)):
+        keys, velocities = way(lowering)
+        keys[3:5, 0] = bend
+        assert not crouch.rules_out(keys, velocities, extra)

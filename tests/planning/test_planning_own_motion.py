@@ -110,6 +110,33 @@ def test_legs_are_where_the_ground_has_them_at_every_moment() -> None:
     assert min(high, touching) > 5
 
 
+def test_where_a_tread_raises_a_thigh_to_an_upright_trunk_a_bent_one_may_come_as_near_and_no_nearer() -> None:
+    stout = 0.05  # metres that trunk and thighs keep apart: more than they have upright
+    treads = [
+        {"type": "box", "center": [0.0, 0.1 * n, 0.25 * n + 0.3], "size": [3.0, 0.2 * n, 0.25]} for n in range(1, 14)
+    ]
+    footing = Footing(MODEL, Scene.of("stair", treads, finish=(0.0, 4.0)).ground)
+    assert not footing.plain
+    parts = PARTS._replace(limits=np.where(PARTS.kinds == WAIST, PARTS.limits + np.float32(stout), PARTS.limits))
+    path, keys, rates = folded(0.0)
+    states = path.states.copy()
+    states[:, 1], states[:, 3] = 0.9 + 0.6 * T * np.arange(len(states)), 0.6
+    states[:, HEIGHT], states[:, HEIGHT + 1] = 0.8 * (states[:, 1] - 0.3), 0.8 * 0.6
+    path = RootPath(0.0, T, footing.stood(states)[0])
+
+    def waist_touches(waist: list[float]) -> NDArray[np.bool_]:
+        keys[:, columns_of(DofGroup.WAIST)] = waist
+        found: NDArray[np.bool_] = (
+            OwnMotion(parts, footing.underfoot).contacts(path, keys, rates, keys + ASIDE, 0) == WAIST
+        )
+        return found
+
+    assert not waist_touches([0.0, 0.0, 0.0]).any()
+    nearest = np.array([looked_at(path, keys, rates, k, footing)[WAIST].min() for k in range(path.horizon)])
+    assert np.all(nearest < stout)
+    assert waist_touches([1.4, 0.0, 0.5]).all()
+
+
 def test_far_ahead_no_less_is_asked_for() -> None:
     motion, free, touching = OwnMotion(PARTS), 0, 0
     for seed in range(8):

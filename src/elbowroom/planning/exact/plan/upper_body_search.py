@@ -30,7 +30,7 @@ from elbowroom.planning.exact.plan.children import ChildSearch, GroupPaths
 from elbowroom.planning.exact.plan.evidence import EvidenceLog
 from elbowroom.planning.exact.plan.unhindered import unhindered
 from elbowroom.planning.exact.refine.blocked_slice import BlockedSlice
-from elbowroom.planning.exact.sweep.crouch import ROUNDS, Crouch, node_lowerings, too_deep
+from elbowroom.planning.exact.sweep.crouch import ROUNDS, Crouch, node_waists, too_deep
 from elbowroom.planning.exact.sweep.node_clearances import HELD_AT_START, held_clearance
 from elbowroom.planning.model.lowered_legs import LoweredLegs
 from elbowroom.planning.motion import GoOn, keep_going
@@ -371,10 +371,10 @@ class UpperBodySearch:
             previous = follow.keys
             closed[:, closed.shape[1] - EXTRA + PREVIOUS] = 0.0
 
-        def lowerings() -> Floats:
+        def nodes() -> Floats:
             lanes = np.zeros((postures.moves.shape[1], DofGroup.WAIST.size))
             lanes[: len(postures.configurations)] = postures.configurations
-            return node_lowerings(lanes, self.goals[:, at], previous, self.problem.begins.upper[at])
+            return node_waists(lanes, self.goals[:, at], previous, self.problem.begins.upper[at])
 
         def folds(keys: Floats, velocities: Floats) -> Bools:
             uppers, rates = self.goals.copy(), np.zeros_like(self.goals)
@@ -382,7 +382,7 @@ class UpperBodySearch:
             begin = self.problem.begins.ahead
             return self.caches.own_trunk.contacts(self.path, uppers, rates, self.problem.walk, begin) >= 0
 
-        crouch = Crouch(self.legs, self.path, lowerings, folds, lambda: self._shown)
+        crouch = Crouch(self.legs, self.path, nodes, folds, lambda: self._shown)
         for attempt in range(ROUNDS):
             way = self._search(closed, follow, trunk=trunk)
             path = way.path

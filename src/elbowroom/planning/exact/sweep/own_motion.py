@@ -2,8 +2,9 @@
 
 A pair is two capsules, seen from the pelvis or from the chest. How far they can move against each other is what each
 component of the body moves in a part of a key interval, times the pair's levers. Feet are looked at on what they stand
-on at that moment, and what that alone makes of the legs from look to look is measured and added. An interval that was
-looked at for an earlier plan is known by its content, on uneven ground by its place too. It is one compiled call.
+on at that moment, and what that alone makes of the legs from look to look is measured and added. Where that raises a
+thigh to an upright trunk, a bent one may come as near. An interval that was looked at for an earlier plan is known by
+its content, on uneven ground by its place too. It is one compiled call.
 """
 
 from typing import NamedTuple
@@ -26,7 +27,7 @@ from elbowroom.planning.halving import ENOUGH, begun, due, settle
 from elbowroom.planning.model.axis_distances import clear_pairs
 from elbowroom.planning.model.footing import ON_PLANE, Underfoot
 from elbowroom.planning.model.levers import MOVES, SPARE, BodyLevers
-from elbowroom.planning.model.self_pairs import SelfPairs
+from elbowroom.planning.model.self_pairs import OVERLAP, SelfPairs
 from elbowroom.planning.root.path import RootPath, interpolate_root
 
 Floats = NDArray[np.float64]
@@ -39,6 +40,7 @@ _HALVINGS = plain(7)  # of these
 _LOOKS = 32  # at once
 _AFAR = 1e-3  # metres: proven far ahead; what was free from afar stays free when it is near
 _SOON = 4  # key intervals ahead until which a motion is near
+_CARRIED = plain(2)  # the first groups in `SEARCH_ORDER`, waist and head: only legs are in their way
 _COLUMNS = np.array([(columns_of(group).start, columns_of(group).stop) for group in LOCAL_GROUPS])
 _PLACE = plain(5)  # numbers of a root state that tell where it is, and how high
 _WIDTH = plain(CONTENT + 2 * LOCAL + 5)  # numbers that a key time is known by
@@ -196,18 +198,23 @@ def _prove(parts: OwnParts, feet: _Feet, shown: KeyedMotion, chosen: Indices, le
             intervals[i * looks + n], moments[i * looks + n] = chosen[i], n / _PARTS
         _set_moves(shown, chosen[i], moves[i * _PARTS : (i + 1) * _PARTS])
     roots, postures = _roots_at(parts, feet, shown, intervals, moments), _postures(shown, intervals, moments)
-    lengths = _lengths(parts.levers, moves)
+    lengths, limits = _lengths(parts.levers, moves), np.empty((count, parts.limits.shape[0]), np.float32)
+    limits[:] = parts.limits
     if not feet.under.ground.plain:
         _add_raising(parts, postures, roots, lengths)
-    proof = begun(_gaps(parts, postures, roots), lengths, _PARTS, _AFAR, _HALVINGS)
-    wanted, shares = np.empty(_LOOKS, np.int64), np.empty(_LOOKS)
+        _lower_to_upright(parts, roots, limits)
+    owner = np.arange(count * looks) // looks
+    proof = begun(_gaps(parts, postures, roots, limits, owner), lengths, _PARTS, _AFAR, _HALVINGS)
+    wanted, shares, owner = np.empty(_LOOKS, np.int64), np.empty(_LOOKS), np.empty(_LOOKS, np.int64)
     more = due(proof, wanted, shares)
     while more > 0:
         for n in range(more):
             shares[n] = (wanted[n] % _PARTS + shares[n]) / _PARTS
-            wanted[n] = chosen[wanted[n] // _PARTS]
+            owner[n] = wanted[n] // _PARTS
+            wanted[n] = chosen[owner[n]]
         roots = _roots_at(parts, feet, shown, wanted[:more], shares[:more])
-        settle(proof, _gaps(parts, _postures(shown, wanted[:more], shares[:more]), roots), more)
+        postures = _postures(shown, wanted[:more], shares[:more])
+        settle(proof, _gaps(parts, postures, roots, limits, owner), more)
         more = due(proof, wanted, shares)
     for b in range(proof.least.shape[0]):
         k = chosen[b // _PARTS]
@@ -259,6 +266,21 @@ def _add_raising(parts: OwnParts, postures: Floats, roots: Floats, lengths: Floa
 
 
 @helper
+def _lower_to_upright(parts: OwnParts, roots: Floats, limits: Floats32) -> None:
+    """Let trunk and head come as near to the legs as they are upright somewhere in the same interval, as in a walk.
+
+    `limits` (K, P) of the intervals; root states (N, ROOT_STATE), N / K of each.
+    """
+    axes, _, _ = posed_body(parts.body, np.zeros((roots.shape[0], DOF)), roots)
+    looks = roots.shape[0] // limits.shape[0]
+    for p in range(limits.shape[1]):
+        if parts.kinds[p] < _CARRIED:
+            found = clear_pairs(axes[parts.first[p]], axes[parts.second[p]])
+            for n in range(roots.shape[0]):
+                limits[n // looks, p] = min(limits[n // looks, p], found[n] - OVERLAP)
+
+
+@helper
 def _moved(before: Floats32, after: Floats32, shift: Floats) -> float:
     """How far an axis (6,) is moved, beyond a shift (3,) of all, at that of its ends which goes farther."""
     farthest = 0.0
@@ -300,13 +322,16 @@ def _postures(shown: KeyedMotion, intervals: Indices, shares: Floats) -> Floats:
 
 
 @exact_kernel
-def _gaps(parts: OwnParts, postures: Floats, roots: Floats) -> Floats32:
-    """The gaps (N, P) of the pairs in postures (N, DOF) and root states, metres beyond what they may come near."""
+def _gaps(parts: OwnParts, postures: Floats, roots: Floats, limits: Floats32, owner: Indices) -> Floats32:
+    """The gaps (N, P) of the pairs in postures (N, DOF) and root states, metres beyond what they may come near.
+
+    That is a row of `limits` (K, P), told for each posture by `owner` (N or more,).
+    """
     capsules, _, _ = posed_body(parts.body, postures, roots)
     count = roots.shape[0]
     gaps = np.empty((count, parts.first.shape[0]), np.float32)
     for p in range(parts.first.shape[0]):
         found = clear_pairs(capsules[parts.first[p]], capsules[parts.second[p]])
         for n in range(count):
-            gaps[n, p] = found[n] - parts.limits[p]
+            gaps[n, p] = found[n] - limits[owner[n], p]
     return gaps
