@@ -120,6 +120,13 @@ def test_the_unit_of_loose_triangles_is_guessed_by_the_height_of_a_room(unit: fl
     assert "--scale tells otherwise" in found.told[1]
 
 
+@pytest.mark.parametrize("size", [(12.0, 2.0, 9.0), (20.0, 9.0, 27.0), (44.0, 39.0, 44.0), (64.0, 15.4, 64.0)])
+def test_halls_and_levels_in_metres_are_not_taken_for_rooms_in_feet(size: tuple[float, float, float]) -> None:
+    x, y, z = size
+    text = f"v 0 0 0\nv {x} 0 0\nv {x} {y} {z}\nv 0 {y} {z}\nf 1 2 3\nf 1 3 4\n"
+    assert parse_place(text.encode(), "a.obj").metre == 1.0
+
+
 @pytest.mark.parametrize(
     "options",
     [{"scale": 0.0}, {"scale": math.nan}, {"up": "up"}, {"ground": math.inf}, {"drop": ("",)}, {"drop": ("a",) * 200}],
@@ -197,6 +204,15 @@ def test_floors_are_found_with_what_can_be_walked_on() -> None:
     doorway = 0.8 * 0.2
     assert inside.area == pytest.approx(2 * 16.0 + doorway - 0.64, rel=0.08)
     assert len([size for size in inside.regions()[1] if size > 0.5]) == 1
+
+
+def test_a_roof_is_no_ground_however_much_larger_it_is_than_the_furnished_room_below() -> None:
+    broad = {**TWO_ROOMS, "Ceiling": ((0, 2.6, 4), (7.0, 0.2, 12.0))}
+    found = survey(place(broad))
+    assert found.floors[1].area > 2.5 * found.floors[0].area
+    assert found.ground is found.floors[0]
+    unroofed = survey(place({name: box for name, box in broad.items() if name in ("Ceiling", "Table")}))
+    assert unroofed.ground.height == pytest.approx(2.7, abs=0.02)  # there is no room below it
 
 
 def test_the_passage_between_two_rooms_is_their_door() -> None:

@@ -25,6 +25,7 @@ _LEVEL = 0.98  # cosine between a face's normal and an axis at which it lies acr
 _LOW = 0.2  # share of the height in which a floor is looked for
 _NO_FLOOR, _A_FLOOR = 0.25, 0.6  # share of the ground that level faces cover there
 _UNITS = {"m": 1.0, "cm": 0.01, "mm": 0.001, "inch": 0.0254, "foot": 0.3048}
+_LOWEST, _HIGHEST = 1.9, 50.0  # metres of a room, a house or a level: a model of so many units is taken to be in metres
 _LIKELY_HEIGHT = 3.0  # metres of a room or a house
 _SMALLEST, _LARGEST = 1.0, 1000.0  # metres a place is wide
 
@@ -47,8 +48,9 @@ def axes_of(
     up, why_up = _up_of(vertices, faces, kind, options, said)
     turn = np.array(_TURNS[up], np.float64)
     extents = np.ptp(vertices @ turn.T, axis=0)
-    metre, why_metre = _metre_of(float(extents[1]), kind, options, said)
-    wide = metre * float(max(extents[0], extents[2]))
+    broad = float(max(extents[0], extents[2]))
+    metre, why_metre = _metre_of(float(extents[1]), broad, kind, options, said)
+    wide = metre * broad
     notes: tuple[str, ...] = ()
     if not _SMALLEST <= wide <= _LARGEST:
         notes = (f"it is {wide:.3g} m wide, which is odd for a place: tell its unit with --scale",)
@@ -85,7 +87,9 @@ def _floor_share(vertices: Floats, faces: Ints, axis: int) -> float:
     return covered / ground if ground > 0.0 else 0.0
 
 
-def _metre_of(height: float, kind: ModelKind, options: PlaceOptions, said: Said | None) -> tuple[float, str]:
+def _metre_of(
+    height: float, broad: float, kind: ModelKind, options: PlaceOptions, said: Said | None
+) -> tuple[float, str]:
     if options.scale is not None:
         return options.scale, f"a unit is {options.scale:g} m, as told"
     if said is not None:
@@ -93,10 +97,18 @@ def _metre_of(height: float, kind: ModelKind, options: PlaceOptions, said: Said 
     if kind.says_its_unit:
         return 1.0, "a unit is 1 m, as the format says"
     tall = max(height, 1e-9)
-    name = min(_UNITS, key=lambda each: abs(np.log(tall * _UNITS[each] / _LIKELY_HEIGHT)) * _doubt(each))
+    name = _likely_unit(tall, broad)
     return _UNITS[name], (
         f"a unit is taken for 1 {name}: so the place is {tall * _UNITS[name]:.3g} m high (--scale tells otherwise)"
     )
+
+
+def _likely_unit(tall: float, broad: float) -> str:
+    """A metre where that is as high as places are; else what comes nearest to a room, of those not odd in breadth."""
+    if _LOWEST <= tall <= _HIGHEST:
+        return "m"
+    fitting = [name for name, metre in _UNITS.items() if _SMALLEST <= metre * broad <= _LARGEST] or ["m"]
+    return min(fitting, key=lambda name: abs(np.log(tall * _UNITS[name] / _LIKELY_HEIGHT)) * _doubt(name))
 
 
 def _doubt(unit: str) -> float:

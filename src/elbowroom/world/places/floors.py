@@ -21,6 +21,7 @@ _LEAST_AREA, _LEAST_SHARE = 1.0, 0.03  # m², and share of the largest: less is 
 _LEAST_WALK = 0.5  # m² that can be walked on
 _MOST_FLOORS = 16
 _ENOUGH = 0.5  # share of the largest floor that the lowest must have to be walked on
+_OVER_ROOMS = 0.25  # share of what is walkable on a roof
 _ALL_ROUND = np.ones((3, 3), bool)
 
 
@@ -76,10 +77,24 @@ def floor_at(columns: Columns, height: float) -> Floor:
 
 
 def ground_floor(floors: tuple[Floor, ...]) -> Floor | None:
-    """The lowest floor that is at least half as large as the largest; None without floors."""
-    areas = [floor.area for floor in floors]
+    """The lowest floor that is at least half as large as the largest; None without floors.
+
+    Roofs do not count, where there is anything else: over a furnished room, or one of thick walls, they are larger.
+    """
+    standing = standing_surfaces(floors[0].columns) if floors else None
+    inside = [floor for floor in floors if standing is not None and not _is_roof(floor, standing)] or floors
+    areas = [floor.area for floor in inside]
     largest = max(areas, default=0.0)
-    return next((floor for floor, area in zip(floors, areas, strict=True) if area >= _ENOUGH * largest), None)
+    return next((floor for floor, area in zip(inside, areas, strict=True) if area >= _ENOUGH * largest), None)
+
+
+def _is_roof(floor: Floor, standing: Flags) -> bool:
+    """Whether one could stand below much of what is walkable on a floor, and nothing is above that."""
+    columns = floor.columns
+    covered = columns.grid(columns.low > floor.height + _SAME)
+    over_a_room = columns.grid(standing & (columns.low < floor.height - HEADROOM))
+    roof = floor.walkable & over_a_room & ~covered
+    return bool(roof.sum() > _OVER_ROOMS * floor.walkable.sum())
 
 
 def _levels(columns: Columns) -> Iterator[float]:
